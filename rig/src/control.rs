@@ -1,0 +1,193 @@
+//! What the head can be told to do: one number per muscle, jaw, tongue, lid, gaze and head angle.
+//!
+//! The twelve muscles of the lower face are HABER 4.2's number; the paper names none of them, so
+//! the choice is by anatomy (Terminologia Anatomica): the two halves of the orbicularis oris and
+//! the ten muscles that insert into it or into the chin. Paired muscles act together.
+
+use serde::{Deserialize, Serialize};
+
+/// A muscle of the lower face; paired ones stand for their left and right belly.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+#[repr(usize)]
+#[allow(missing_docs, reason = "the names are the field's own")]
+pub enum Muscle {
+    OrbicularisOrisSuperior,
+    OrbicularisOrisInferior,
+    LevatorLabiiSuperioris,
+    LevatorLabiiSuperiorisAlaequeNasi,
+    LevatorAnguliOris,
+    ZygomaticusMajor,
+    ZygomaticusMinor,
+    Risorius,
+    Buccinator,
+    DepressorAnguliOris,
+    DepressorLabiiInferioris,
+    Mentalis,
+}
+
+impl Muscle {
+    /// How many there are.
+    pub const COUNT: usize = 12;
+
+    /// All of them, in the order of their numbers.
+    pub const ALL: [Self; Self::COUNT] = [
+        Self::OrbicularisOrisSuperior,
+        Self::OrbicularisOrisInferior,
+        Self::LevatorLabiiSuperioris,
+        Self::LevatorLabiiSuperiorisAlaequeNasi,
+        Self::LevatorAnguliOris,
+        Self::ZygomaticusMajor,
+        Self::ZygomaticusMinor,
+        Self::Risorius,
+        Self::Buccinator,
+        Self::DepressorAnguliOris,
+        Self::DepressorLabiiInferioris,
+        Self::Mentalis,
+    ];
+}
+
+/// Makes an enum of controls together with its names and bounds, so that the three cannot drift.
+macro_rules! controls {
+    ($($(#[$doc:meta])* $variant:ident = $name:literal in $min:literal ..= $max:literal;)*) => {
+        /// One thing the head can be told to do. The first twelve are the contractions of
+        /// [`Muscle::ALL`], in that order.
+        #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+        #[repr(usize)]
+        pub enum Control { $($(#[$doc])* $variant,)* }
+
+        impl Control {
+            /// All controls, in the order of their numbers.
+            pub const ALL: &'static [Self] = &[$(Self::$variant,)*];
+            /// How many there are.
+            pub const COUNT: usize = Self::ALL.len();
+
+            /// The name used in columns and JSON.
+            #[must_use]
+            pub const fn name(self) -> &'static str {
+                match self { $(Self::$variant => $name,)* }
+            }
+
+            /// Lowest and highest value the head accepts.
+            #[must_use]
+            pub const fn range(self) -> (f32, f32) {
+                match self { $(Self::$variant => ($min, $max),)* }
+            }
+        }
+    };
+}
+
+controls! {
+    /// Contraction, 0 relaxed to 1.
+    OrbicularisOrisSuperior = "orbicularis_oris_superior" in 0.0 ..= 1.0;
+    /// Contraction.
+    OrbicularisOrisInferior = "orbicularis_oris_inferior" in 0.0 ..= 1.0;
+    /// Contraction.
+    LevatorLabiiSuperioris = "levator_labii_superioris" in 0.0 ..= 1.0;
+    /// Contraction.
+    LevatorLabiiSuperiorisAlaequeNasi = "levator_labii_superioris_alaeque_nasi" in 0.0 ..= 1.0;
+    /// Contraction.
+    LevatorAnguliOris = "levator_anguli_oris" in 0.0 ..= 1.0;
+    /// Contraction.
+    ZygomaticusMajor = "zygomaticus_major" in 0.0 ..= 1.0;
+    /// Contraction.
+    ZygomaticusMinor = "zygomaticus_minor" in 0.0 ..= 1.0;
+    /// Contraction.
+    Risorius = "risorius" in 0.0 ..= 1.0;
+    /// Contraction.
+    Buccinator = "buccinator" in 0.0 ..= 1.0;
+    /// Contraction.
+    DepressorAnguliOris = "depressor_anguli_oris" in 0.0 ..= 1.0;
+    /// Contraction.
+    DepressorLabiiInferioris = "depressor_labii_inferioris" in 0.0 ..= 1.0;
+    /// Contraction.
+    Mentalis = "mentalis" in 0.0 ..= 1.0;
+    /// Protrusion of the upper half of the orbicularis oris along its axis; below 0 is tucked in.
+    ProtrusionSuperior = "protrusion_superior" in -1.0 ..= 1.0;
+    /// Protrusion of the lower half.
+    ProtrusionInferior = "protrusion_inferior" in -1.0 ..= 1.0;
+    /// Jaw rotation about the condylar axis, radians, 0 with the teeth together.
+    Jaw = "jaw_rad" in 0.0 ..= 0.45;
+    /// Tongue tip: 0 at rest to 1 at the alveolar ridge.
+    TongueTip = "tongue_tip" in 0.0 ..= 1.0;
+    /// Tongue forward: 0 at rest to 1 with its tip between the teeth; -1 drawn back.
+    TongueOut = "tongue_out" in -1.0 ..= 1.0;
+    /// Tongue body: 0 at rest to 1 with the dorsum at the palate.
+    TongueBody = "tongue_body" in 0.0 ..= 1.0;
+    /// Closing of the subject's left lids, 0 open to 1 closed.
+    LidL = "lid_l" in 0.0 ..= 1.0;
+    /// Closing of the subject's right lids.
+    LidR = "lid_r" in 0.0 ..= 1.0;
+    /// Gaze to the subject's left, radians.
+    GazeYaw = "gaze_yaw_rad" in -0.6 ..= 0.6;
+    /// Gaze up, radians.
+    GazePitch = "gaze_pitch_rad" in -0.45 ..= 0.45;
+    /// Head turned to the subject's left, radians.
+    HeadYaw = "head_yaw_rad" in -0.6 ..= 0.6;
+    /// Head raised, radians.
+    HeadPitch = "head_pitch_rad" in -0.4 ..= 0.4;
+    /// Head tilted towards the subject's left shoulder, radians.
+    HeadRoll = "head_roll_rad" in -0.3 ..= 0.3;
+}
+
+impl Control {
+    /// The contraction of `muscle`.
+    #[must_use]
+    pub const fn contraction(muscle: Muscle) -> Self {
+        Self::ALL[muscle as usize]
+    }
+
+    /// The control of that name.
+    #[must_use]
+    pub fn from_name(name: &str) -> Option<Self> {
+        Self::ALL.iter().copied().find(|c| c.name() == name)
+    }
+}
+
+/// A value for every [`Control`]; the default is the head at rest.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Controls(pub [f32; Control::COUNT]);
+
+impl Default for Controls {
+    fn default() -> Self {
+        Self([0.0; Control::COUNT])
+    }
+}
+
+impl std::ops::Index<Control> for Controls {
+    type Output = f32;
+    fn index(&self, control: Control) -> &f32 {
+        &self.0[control as usize]
+    }
+}
+
+impl std::ops::IndexMut<Control> for Controls {
+    fn index_mut(&mut self, control: Control) -> &mut f32 {
+        &mut self.0[control as usize]
+    }
+}
+
+impl Controls {
+    /// Every value within its range; what is not a number becomes 0.
+    #[must_use]
+    pub fn clamped(mut self) -> Self {
+        for &control in Control::ALL {
+            let (min, max) = control.range();
+            let value = self[control];
+            self[control] = if value.is_finite() {
+                value.clamp(min, max)
+            } else {
+                0.0
+            };
+        }
+        self
+    }
+
+    /// The mix `self * (1 - share) + other * share`.
+    #[must_use]
+    pub fn lerp(&self, other: &Self, share: f32) -> Self {
+        Self(std::array::from_fn(|i| {
+            self.0[i] + (other.0[i] - self.0[i]) * share
+        }))
+    }
+}
