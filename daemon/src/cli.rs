@@ -1,0 +1,299 @@
+//! The command line: what users script against (DESIGN.md's table, as far as this version goes).
+//!
+//! Only words and their meaning; the work is in the module of each command's name. Values that
+//! need reading (sizes, rates, colours) are in [`values`].
+
+mod values;
+
+use std::path::PathBuf;
+
+use clap::{ArgAction, Args, Parser, Subcommand, ValueEnum};
+
+pub use values::{Fps, Rgb, Size};
+
+/// A real-time, speech-driven talking head: phoneme labels and sound in, a speaking face out.
+#[derive(Debug, Parser)]
+#[command(
+    name = "mouthpiece",
+    version,
+    max_term_width = 100,
+    after_help = "Examples:\n  mouthpiece say --demo\n  mouthpiece export --labels hello.phn --audio hello.wav -o hello.mp4\n\n\
+                  Exit status: 0 done, 1 the work failed, 2 wrong usage, 130 stopped by Ctrl-C."
+)]
+pub struct Cli {
+    /// Say more on stderr (-v progress and choices, -vv details); RUST_LOG overrides
+    #[arg(short, long, global = true, action = ArgAction::Count)]
+    pub verbose: u8,
+    #[command(subcommand)]
+    pub command: Command,
+}
+
+/// What to do.
+#[derive(Debug, Subcommand)]
+pub enum Command {
+    Run(RunArgs),
+    Say(SayArgs),
+    Export(ExportArgs),
+    Curves(CurvesArgs),
+    Labels(LabelsArgs),
+    Still(StillArgs),
+    Bench(BenchArgs),
+    Doctor(DoctorArgs),
+}
+
+/// The daemon: a window, sound and a socket; the face idles alive until something speaks
+#[derive(Debug, Args)]
+#[command(
+    after_help = "Examples:\n  mouthpiece run\n  mouthpiece run --listen /tmp/face.sock --fullscreen\n  mouthpiece run --listen 127.0.0.1:7716 --audio-device alsa:pulse"
+)]
+pub struct RunArgs {
+    /// Where to listen: a path for a Unix socket or HOST:PORT on loopback [default:
+    /// mouthpiece.sock in $XDG_RUNTIME_DIR]
+    #[arg(long, value_name = "ADDR")]
+    pub listen: Option<String>,
+    #[command(flatten)]
+    pub stage: StageArgs,
+}
+
+/// Speak through the running daemon; without one, in a window of its own
+#[derive(Debug, Args)]
+#[command(
+    after_help = "Examples:\n  mouthpiece say --demo\n  mouthpiece say --labels hello.phn --audio hello.wav\n  my-tts --timings | mouthpiece say --labels - --audio hello.wav"
+)]
+pub struct SayArgs {
+    #[command(flatten)]
+    pub input: InputArgs,
+    /// The daemon to speak through: as `run --listen`; when given, a daemon must be there
+    #[arg(long, value_name = "ADDR")]
+    pub listen: Option<String>,
+    #[command(flatten)]
+    pub stage: StageArgs,
+}
+
+/// Window, sound device and look of a live face.
+#[derive(Clone, Debug, Args)]
+pub struct StageArgs {
+    /// Sound device by its name in `mouthpiece doctor`; `none` for a steady clock without sound
+    #[arg(long, value_name = "ID")]
+    pub audio_device: Option<String>,
+    /// Fill the screen
+    #[arg(long)]
+    pub fullscreen: bool,
+    /// Size of the window in pixels
+    #[arg(long, value_name = "WxH", default_value = "720x720")]
+    pub size: Size,
+    /// Quality of the picture
+    #[arg(long, value_enum, default_value_t = TierArg::Medium)]
+    pub tier: TierArg,
+    /// Colour behind the head, #rrggbb
+    #[arg(long, value_name = "COLOUR")]
+    pub background: Option<Rgb>,
+    /// Seed of the blinks and glances of an idle face
+    #[arg(long, value_name = "N", default_value_t = 1)]
+    pub seed: u64,
+}
+
+/// What is to be said.
+#[derive(Clone, Debug, Args)]
+pub struct InputArgs {
+    /// Phoneme labels (TIMIT: `start end phone` a line), `-` for standard input
+    #[arg(long, value_name = "F", required_unless_present = "demo")]
+    pub labels: Option<PathBuf>,
+    /// The sound that belongs to the labels: a WAV file
+    #[arg(long, value_name = "F")]
+    pub audio: Option<PathBuf>,
+    /// The sentence that comes with the program, instead of files
+    #[arg(long, conflicts_with_all = ["labels", "audio"])]
+    pub demo: bool,
+    /// Label times are counted at this rate
+    #[arg(long, value_name = "HZ", default_value_t = 16_000,
+          value_parser = clap::value_parser!(u32).range(1..=768_000))]
+    pub label_rate: u32,
+}
+
+/// Offline video with sound: the same face faster than real time, the same bytes every time
+#[derive(Debug, Args)]
+#[command(
+    after_help = "The kind of output goes by the name: OUT.mp4 is H.264 with Opus sound; OUT-%05d.png or a folder \
+                  (OUT/) is one picture a frame; - is raw RGBA frames on standard output.\n\n\
+                  Examples:\n  mouthpiece export --labels hello.phn --audio hello.wav -o hello.mp4\n  \
+                  mouthpiece export --demo --size 1280x720 --fps 29.97 -o demo.mp4\n  \
+                  mouthpiece export --demo --size 640x480 -o - | ffmpeg -f rawvideo -pix_fmt rgba -s 640x480 -r 30 -i - demo.webm"
+)]
+pub struct ExportArgs {
+    #[command(flatten)]
+    pub input: InputArgs,
+    /// Where to write
+    #[arg(short, long, value_name = "OUT")]
+    pub output: PathBuf,
+    /// Size of the picture in pixels
+    #[arg(long, value_name = "WxH", default_value = "640x480")]
+    pub size: Size,
+    /// Pictures a second: 30, 23.976, 29.97, 30000/1001
+    #[arg(long, value_name = "N", default_value = "30")]
+    pub fps: Fps,
+    #[command(flatten)]
+    pub look: LookArgs,
+    /// Seed of blinks and glances: the same seed, the same video
+    #[arg(long, value_name = "N", default_value_t = 1)]
+    pub seed: u64,
+    /// Bits a second of the video: 800k, 2M, 2500000 [default: by size and rate]
+    #[arg(long, value_name = "B", value_parser = values::bitrate)]
+    pub bitrate: Option<u32>,
+    /// Encode with the ffmpeg program of this machine instead of the built-in encoder
+    #[arg(long)]
+    pub via_ffmpeg: bool,
+}
+
+/// How a picture looks.
+#[derive(Clone, Debug, Args)]
+pub struct LookArgs {
+    /// Quality of the picture
+    #[arg(long, value_enum, default_value_t = TierArg::Medium)]
+    pub tier: TierArg,
+    /// Colour behind the head, #rrggbb
+    #[arg(long, value_name = "COLOUR")]
+    pub background: Option<Rgb>,
+    /// Where the camera stands
+    #[arg(long, value_enum, default_value_t = ViewArg::Front)]
+    pub view: ViewArg,
+}
+
+/// What speech computed and what the face then did, one row per instant; needs no GPU
+#[derive(Debug, Args)]
+#[command(
+    after_help = "Columns: time_s, one per control, then measured on the simulated head: aperture_mm, width_mm, \
+                  protrusion_mm, jaw_rad, lip_teeth_mm.\n\n\
+                  Examples:\n  mouthpiece curves --labels hello.phn\n  mouthpiece curves --labels hello.phn --audio hello.wav --rate 50 -o hello.json"
+)]
+pub struct CurvesArgs {
+    #[command(flatten)]
+    pub input: InputArgs,
+    /// Rows a second
+    #[arg(long, value_name = "HZ", default_value = "100")]
+    pub rate: Fps,
+    /// Where to write, .csv or .json [default: CSV on standard output]
+    #[arg(short, long, value_name = "F")]
+    pub output: Option<PathBuf>,
+    /// JSON whatever the name
+    #[arg(long)]
+    pub json: bool,
+    /// Seed of blinks and glances; without one the face does nothing but speak
+    #[arg(long, value_name = "N")]
+    pub seed: Option<u64>,
+}
+
+/// Read a label file, check it, and write it as another
+#[derive(Debug, Args)]
+#[command(
+    after_help = "Examples:\n  mouthpiece labels hello.phn\n  mouthpiece labels hello.phn --json\n  mouthpiece labels hello.phn --rate 48000 --to phn -o hello16k.phn"
+)]
+pub struct LabelsArgs {
+    /// The label file, `-` for standard input
+    #[arg(value_name = "F")]
+    pub file: PathBuf,
+    /// Its format [default: by name]
+    #[arg(long, value_enum, value_name = "FMT")]
+    pub from: Option<LabelFormat>,
+    /// The format to write [default: as read]
+    #[arg(long, value_enum, value_name = "FMT")]
+    pub to: Option<LabelFormat>,
+    /// Times in the file are counted at this rate; what is written is counted at 16 kHz
+    #[arg(long, value_name = "HZ", default_value_t = 16_000,
+          value_parser = clap::value_parser!(u32).range(1..=768_000))]
+    pub rate: u32,
+    /// Where to write [default: standard output]
+    #[arg(short, long, value_name = "F")]
+    pub output: Option<PathBuf>,
+    /// Print what was read, and what is odd about it, as JSON
+    #[arg(long, conflicts_with = "to")]
+    pub json: bool,
+}
+
+/// A label format that can be read or written.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub enum LabelFormat {
+    /// TIMIT phones
+    Phn,
+    /// TIMIT words
+    Wrd,
+}
+
+/// One picture
+#[derive(Debug, Args)]
+#[command(
+    after_help = "Examples:\n  mouthpiece still -o face.png\n  mouthpiece still --phone aa --view 34 --size 800x800 --tier high -o aa.png\n  \
+                  mouthpiece still --controls '{\"jaw_rad\": 0.2, \"zygomaticus_major\": 0.8}' -o grin.png"
+)]
+pub struct StillArgs {
+    /// Control values by name as JSON, or a file with them
+    #[arg(long, value_name = "JSON")]
+    pub controls: Option<String>,
+    /// The mouth of this TIMIT phone, held
+    #[arg(long, value_name = "CODE", conflicts_with = "controls")]
+    pub phone: Option<String>,
+    #[command(flatten)]
+    pub look: LookArgs,
+    /// Size of the picture in pixels
+    #[arg(long, value_name = "WxH", default_value = "640x480")]
+    pub size: Size,
+    /// Where to write: a .png file
+    #[arg(short, long, value_name = "F.png")]
+    pub output: PathBuf,
+}
+
+/// Speed of each stage on this machine
+#[derive(Debug, Args)]
+#[command(after_help = "Examples:\n  mouthpiece bench\n  mouthpiece bench --json > speed.json")]
+pub struct BenchArgs {
+    /// Machine-readable output
+    #[arg(long)]
+    pub json: bool,
+}
+
+/// What this machine has (GPU, sound, display) and what to install
+#[derive(Debug, Args)]
+#[command(after_help = "Example:\n  mouthpiece doctor")]
+pub struct DoctorArgs {}
+
+/// Quality of the picture.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub enum TierArg {
+    Low,
+    Medium,
+    High,
+}
+
+/// Where the camera stands.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub enum ViewArg {
+    Front,
+    Side,
+    /// Half way between the two
+    #[value(name = "34")]
+    ThreeQuarter,
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_table_of_commands_is_consistent() {
+        use clap::CommandFactory as _;
+        Cli::command().debug_assert();
+    }
+
+    #[test]
+    fn every_command_shows_an_example() {
+        use clap::CommandFactory as _;
+        for command in Cli::command().get_subcommands() {
+            let help = command.get_after_help().map(ToString::to_string);
+            assert!(
+                help.unwrap_or_default().contains("mouthpiece "),
+                "{} has no example",
+                command.get_name()
+            );
+        }
+    }
+}
