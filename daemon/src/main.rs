@@ -3,6 +3,7 @@
 //! | module | does |
 //! |---|---|
 //! | [`cli`] | the words of the command line |
+//! | [`media`] | sound and video files |
 
 #![forbid(unsafe_code)]
 #![allow(
@@ -12,6 +13,7 @@
 
 mod cli;
 mod log;
+mod media;
 
 use std::process::ExitCode;
 
