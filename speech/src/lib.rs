@@ -1,1 +1,25 @@
-//! stub
+//! From phones to what a head is told to do: Cohen-Massaro coarticulation (HABER 5.2), lips that
+//! close when they must, and a face that is alive between the words (HABER 5.4).
+//!
+//! - [`Tables`]: the data, one row per phone and class, in `data/*.toml`, each row with its source.
+//! - [`Speech`]: those tables in terms of one head's controls, worked out once.
+//! - [`Track`]: an utterance, offline or growing, that knows the controls at any tick.
+//! - [`Idle`]: blinks, glances and small head movements.
+//!
+//! Knows nothing of meshes, pixels and sockets; what a control does to a face is rig's affair.
+#![forbid(unsafe_code)]
+
+mod blend;
+mod contact;
+mod idle;
+mod speech;
+mod tables;
+mod track;
+
+pub use idle::Idle;
+pub use speech::{Speech, SpeechError};
+pub use tables::{
+    ArticulationRow, ClassRow, Contact, ContactTimes, Dominance, DominanceTable, Driven, Glide,
+    Group, Lips, TableError, Tables, Tongue,
+};
+pub use track::Track;
