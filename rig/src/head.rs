@@ -2,7 +2,8 @@
 
 use glam::{Affine3A, Quat, Vec2, Vec3, vec3};
 
-use crate::{Control, Controls};
+use crate::muscle::Fibre;
+use crate::{Control, Controls, KeyFrame};
 
 /// A frame of reference that parts hang on; poses come from [`Head::bodies`].
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
@@ -92,6 +93,34 @@ pub struct Skin {
     pub wet: Vec<f32>,
 }
 
+/// Levels of a lip's column, from the vermilion border over crest, brim and contact line to the
+/// inner side: see [`Lips`].
+pub const LIP_LEVELS: usize = 7;
+
+/// The skin vertices of both lips as columns from the subject's right corner to the left one; column
+/// `i` of the upper lip stands over column `i` of the lower. Level 0 is the vermilion border, 1 the
+/// crest, 2 the brim, 3 the contact line, 4 to 6 the inner side. At the corners both share vertices.
+#[derive(Clone, Debug, Default)]
+pub struct Lips {
+    /// Columns of the upper lip.
+    pub upper: Vec<[u32; LIP_LEVELS]>,
+    /// Columns of the lower lip.
+    pub lower: Vec<[u32; LIP_LEVELS]>,
+}
+
+/// A skin vertex that an eyelid carries.
+#[derive(Clone, Copy, Debug)]
+pub struct Lid {
+    /// Which.
+    pub vertex: u32,
+    /// Whether it is of the subject's left eye.
+    pub left: bool,
+    /// Rotation about the eye's transverse axis that closes it, radians.
+    pub turn: f32,
+    /// How firmly the lid holds it, 0..1.
+    pub hold: f32,
+}
+
 /// The reference or any other head, at rest.
 #[derive(Clone, Debug)]
 pub struct Head {
@@ -102,7 +131,13 @@ pub struct Head {
     pub parts: Vec<Part>,
     /// Lines on the skin that the colour map is painted by.
     pub features: Vec<Feature>,
-    /// Centre and half length of the axis through the condyles, mm: the axis runs along x.
+    /// The lips' columns.
+    pub lips: Lips,
+    /// What the lids carry.
+    pub lids: Vec<Lid>,
+    /// Muscle fibres, left and right.
+    pub fibres: Vec<Fibre>,
+    /// A point of the axis through the condyles, mm: the axis runs along x.
     pub condyle_axis: Vec3,
     /// What the head turns about.
     pub neck_pivot: Vec3,
@@ -172,6 +207,16 @@ impl Head {
         [tongue_body, tongue_body * raise * blade]
     }
 
+    /// The head at rest, as a key frame at time 0.
+    #[must_use]
+    pub fn rest_frame(&self) -> KeyFrame {
+        KeyFrame {
+            skin: self.skin.mesh.positions.clone(),
+            velocity: vec![Vec3::ZERO; self.skin.mesh.positions.len()],
+            ..KeyFrame::default()
+        }
+    }
+
     /// The named line on the skin, where this head has it.
     #[must_use]
     pub fn feature(&self, name: &str) -> Option<&Feature> {
@@ -186,4 +231,18 @@ const JAW_SLIDE_MM_PER_RAD: f32 = 14.0;
 /// Rotation about a point.
 fn about(pivot: Vec3, rotation: Quat) -> Affine3A {
     Affine3A::from_rotation_translation(rotation, pivot - rotation * pivot)
+}
+
+/// Unit normals of a mesh, weighted by triangle area.
+#[must_use]
+pub fn normals(positions: &[Vec3], triangles: &[[u32; 3]]) -> Vec<Vec3> {
+    let mut sums = vec![Vec3::ZERO; positions.len()];
+    for t in triangles {
+        let [a, b, c] = t.map(|i| positions[i as usize]);
+        let area = (b - a).cross(c - a);
+        for &i in t {
+            sums[i as usize] += area;
+        }
+    }
+    sums.into_iter().map(|n| n.normalize_or(Vec3::Z)).collect()
 }
