@@ -8,16 +8,36 @@
 //! | `phone` | the 61 phones of TIMIT |
 //! | `segment` | what a label says: phone, word, stress, times |
 //! | `tick` | integer time and sample rates |
+//! | `reader` | where label formats are chosen and read |
+//! | `writer` | the same for writing |
+//! | [`timit`] | `.PHN` and `.WRD`, as files and as streams |
+//! | `check` | what is odd about labels that can be used |
+//! | `error` | what is wrong with those that cannot |
+//! | [`limits`] | how much a file or stream may ask for |
+//! | `lines` | cuts pieces of any size into lines |
 //! | `nearest` | which code an unknown one resembles |
 
 #![forbid(unsafe_code)]
 
+mod check;
+mod error;
+pub mod limits;
+mod lines;
 mod nearest;
 mod phone;
+mod reader;
 mod segment;
 mod tick;
+pub mod timit;
+mod writer;
 
+pub use check::{Warning, check};
+pub use error::{Fault, LabelError, LineError};
 pub use nearest::nearest;
 pub use phone::{Class, Phone, UnknownCode};
+pub use reader::{
+    Match, READERS, ReadOptions, Reader, Source, detect, read, read_file, read_from, reader,
+};
 pub use segment::{Labels, Segment, Stress, Word};
 pub use tick::{BadRate, RATE_MAX, RATE_MIN, SampleRate, TICK_RATE, TICKS_MAX};
+pub use writer::{WRITERS, WriteError, Writer, writer};

@@ -23,14 +23,14 @@ const SUGGESTIONS_MAX: usize = 3;
 /// Longer symbols resemble no code; also bounds the work that a hostile line can ask for.
 const CODE_BYTES_MAX: usize = 16;
 
-/// The codes nearest to `code`, best first; at least one.
+/// The codes nearest to `code`, best first; none where it is too long to be a code.
 pub fn nearest(code: &str) -> Vec<Phone> {
     let lower = code.to_lowercase();
     if let Some((_, phones)) = FOREIGN.iter().find(|(symbol, _)| *symbol == lower) {
         return phones.to_vec();
     }
     if lower.len() > CODE_BYTES_MAX {
-        return vec![Phone::Pau];
+        return Vec::new();
     }
     // A stress digit, as in ARPAbet's AH0, is no part of the spelling.
     let bare = lower.trim_end_matches(|c: char| c.is_ascii_digit());
@@ -46,7 +46,11 @@ pub fn nearest(code: &str) -> Vec<Phone> {
 
 /// The same as text for a message: `` `pcl`, `tcl` ``.
 pub(crate) fn listed(code: &str) -> String {
-    let quoted: Vec<String> = nearest(code).iter().map(|p| format!("`{p}`")).collect();
+    let near = nearest(code);
+    if near.is_empty() {
+        return "`h#`, `aa` or `pcl`".to_owned();
+    }
+    let quoted: Vec<String> = near.iter().map(|p| format!("`{p}`")).collect();
     quoted.join(", ")
 }
 
