@@ -1,0 +1,302 @@
+//! The sound thread: utterances in turn, from what clients send to the output's ring and the face's cues.
+//!
+//! Everything that is heard or seen has a place on one timeline of ticks, and this thread alone
+//! decides it: an utterance begins at the next tick that is not mixed yet, the next one right
+//! behind it. Silence is mixed while nobody speaks, so that the clock never stops. What comes too
+//! late for its place is dropped, never raced through. `stop` silences what was handed over
+//! already, and the face is cued to relax from the tick that silence begins at.
+
+use mouthpiece_phonemes::Segment;
+use mouthpiece_protocol::ErrorCode;
+use mouthpiece_rig::TICK_RATE;
+use mouthpiece_speech::{Speech, Track};
+use tokio::sync::mpsc;
+
+use std::time::Duration;
+
+use super::sound::Output;
+use super::time::Flow;
+use super::utterance::{Begin, Utterance};
+
+/// Commands that wait for the sound thread; who sends more waits.
+pub const COMMANDS_MAX: usize = 64;
+/// Cues that wait for the simulation thread: many times what a client may queue at once.
+pub const CUES_MAX: usize = 1024;
+/// Utterances of all clients that have not ended.
+const UTTERANCES_MAX: usize = 64;
+/// Sound of all of them, ticks: 20 minutes, 230 MB.
+const SOUND_TICKS_MAX: i64 = 20 * 60 * TICK_RATE;
+/// An utterance that has begun and gets nothing more for this long is over.
+const STARVED_TICKS: i64 = 10 * TICK_RATE;
+/// How often the thread looks after the ring, which holds several times as much.
+const TURN: Duration = Duration::from_millis(10);
+
+/// What the sound thread is told.
+#[derive(Debug)]
+pub enum Command {
+    /// A new utterance.
+    Begin(Begin),
+    /// Its labels, in order.
+    Segments(u64, Vec<Segment>),
+    /// Its sound, 48 kHz, one channel.
+    Sound(u64, Vec<f32>),
+    /// All of it was sent.
+    End(u64),
+    /// It cannot be had.
+    Fail(u64, ErrorCode, String),
+    /// Stop one utterance, or everything.
+    Stop(Option<u64>),
+    /// The process ends.
+    Quit,
+}
+
+/// What the simulation thread is told, by an utterance's key.
+#[derive(Debug)]
+pub enum Cue {
+    /// Speak `track` from tick `start` on.
+    Start {
+        key: u64,
+        start: i64,
+        track: Box<Track>,
+    },
+    /// More labels, in ticks from its start.
+    Segments { key: u64, segments: Vec<Segment> },
+    /// Nothing of it from tick `at` on.
+    Stop { key: u64, at: i64 },
+    /// It is over and may be forgotten.
+    Done { key: u64 },
+}
+
+/// The sound thread's state; [`Conductor::step`] is its body.
+pub struct Conductor {
+    output: Output,
+    commands: mpsc::Receiver<Command>,
+    cues: crossbeam::channel::Sender<Cue>,
+    speech: Speech,
+    /// In the order of their `begin`; those that speak have a start.
+    utterances: Vec<Utterance>,
+    block: Vec<f32>,
+    quit: bool,
+}
+
+impl Conductor {
+    pub fn new(
+        output: Output,
+        commands: mpsc::Receiver<Command>,
+        cues: crossbeam::channel::Sender<Cue>,
+        speech: Speech,
+    ) -> Self {
+        Self {
+            output,
+            commands,
+            cues,
+            speech,
+            utterances: Vec::new(),
+            block: vec![0.0; super::sound::BLOCK_TICKS],
+            quit: false,
+        }
+    }
+
+    /// One turn: commands, clock, sound, news.
+    pub fn step(&mut self, now_ns: i64) -> Flow {
+        self.output.poll(now_ns);
+        // Bounded by what fits into the channel, so that no sender keeps sound from being mixed.
+        for _ in 0..COMMANDS_MAX {
+            match self.commands.try_recv() {
+                Ok(command) => self.obey(command, now_ns),
+                Err(mpsc::error::TryRecvError::Empty) => break,
+                Err(mpsc::error::TryRecvError::Disconnected) => {
+                    self.quit = true;
+                    break;
+                }
+            }
+        }
+        if self.quit {
+            return Flow::End;
+        }
+        let mut wanted = self.output.wanted(now_ns);
+        while wanted > 0 {
+            self.mix_block();
+            wanted = wanted.saturating_sub(self.block.len());
+        }
+        self.tell(now_ns);
+        Flow::Wait(TURN)
+    }
+
+    fn obey(&mut self, command: Command, now_ns: i64) {
+        match command {
+            Command::Begin(begin) => self.begin(begin),
+            Command::Segments(key, segments) => {
+                let audible = self.output.audible(now_ns);
+                if let Some(utterance) = self.find(key) {
+                    let segments = utterance.add_labels(segments, audible);
+                    if !segments.is_empty() {
+                        self.cue(Cue::Segments { key, segments });
+                    }
+                }
+            }
+            Command::Sound(key, mono) => self.sound(key, &mono, now_ns),
+            Command::End(key) => {
+                if let Some(utterance) = self.find(key) {
+                    utterance.ended = true;
+                }
+            }
+            Command::Fail(key, code, message) => {
+                if let Some(utterance) = self.remove(key) {
+                    utterance.tell_failed(code, message);
+                    self.silence(vec![utterance], now_ns, |_, _| {});
+                }
+            }
+            Command::Stop(Some(key)) => {
+                if let Some(utterance) = self.remove(key) {
+                    self.silence(vec![utterance], now_ns, Utterance::tell_stopped);
+                }
+            }
+            Command::Stop(None) => {
+                let all = std::mem::take(&mut self.utterances);
+                self.silence(all, now_ns, Utterance::tell_stopped);
+            }
+            Command::Quit => self.quit = true,
+        }
+    }
+
+    fn begin(&mut self, begin: Begin) {
+        let utterance = Utterance::new(begin);
+        if self.utterances.len() >= UTTERANCES_MAX {
+            utterance.tell_failed(
+                ErrorCode::Busy,
+                format!("{UTTERANCES_MAX} utterances wait already; begin when one has ended"),
+            );
+            return;
+        }
+        self.utterances.push(utterance);
+    }
+
+    fn sound(&mut self, key: u64, mono: &[f32], now_ns: i64) {
+        let held: i64 = self.utterances.iter().map(Utterance::sound_ticks).sum();
+        let written = self.output.written();
+        if held + i64::try_from(mono.len()).unwrap_or(i64::MAX) > SOUND_TICKS_MAX {
+            self.obey(
+                Command::Fail(
+                    key,
+                    ErrorCode::Busy,
+                    "too much sound waits already; send this when less does".to_owned(),
+                ),
+                now_ns,
+            );
+        } else if let Some(utterance) = self.find(key) {
+            utterance.add_sound(mono, written);
+        }
+    }
+
+    /// Ends utterances that were taken out of the queue, at the first tick that is not heard yet.
+    fn silence(&mut self, ended: Vec<Utterance>, now_ns: i64, tell: impl Fn(&Utterance, i64)) {
+        if !ended.iter().any(|u| u.start.is_some()) {
+            ended.iter().for_each(|u| tell(u, 0));
+            return;
+        }
+        let at = self.output.silence(now_ns);
+        for utterance in ended {
+            tell(&utterance, at);
+            if utterance.start.is_some() {
+                let key = utterance.key;
+                self.cue(Cue::Stop { key, at });
+            }
+        }
+        // Whoever was next in line was silenced with it and begins again.
+        let silenced: Vec<u64> = self
+            .utterances
+            .iter_mut()
+            .filter(|u| u.start.is_some_and(|start| start >= at))
+            .map(|u| {
+                u.take_back();
+                u.key
+            })
+            .collect();
+        for key in silenced {
+            self.cue(Cue::Stop { key, at });
+        }
+    }
+
+    /// Mixes the next block, beginning whoever's turn it is.
+    fn mix_block(&mut self) {
+        self.block.fill(0.0);
+        let at = self.output.written();
+        let until = at + i64::try_from(self.block.len()).unwrap_or(0);
+        // The tick from which nobody speaks.
+        let mut free = at;
+        for utterance in self.utterances.iter().filter(|u| u.start.is_some()) {
+            utterance.mix(at, &mut self.block);
+            free = free.max(utterance.end().unwrap_or(i64::MAX));
+        }
+        while free < until {
+            let Some(next) = self
+                .utterances
+                .iter()
+                .position(|u| u.start.is_none() && u.ready())
+            else {
+                break;
+            };
+            self.start(next, free);
+            self.utterances[next].mix(at, &mut self.block);
+            free = self.utterances[next].end().unwrap_or(i64::MAX);
+        }
+        for sample in &mut self.block {
+            *sample = sample.clamp(-1.0, 1.0);
+        }
+        self.output.push(&self.block);
+    }
+
+    fn start(&mut self, index: usize, start: i64) {
+        let utterance = &mut self.utterances[index];
+        utterance.begin_at(start);
+        let key = utterance.key;
+        let track = Box::new(self.speech.track(&utterance.segments));
+        self.cue(Cue::Start { key, start, track });
+    }
+
+    /// Tells clients what is heard, and lets go of what was.
+    fn tell(&mut self, now_ns: i64) {
+        let audible = self.output.audible(now_ns);
+        let written = self.output.written();
+        let mut over = Vec::new();
+        for utterance in &mut self.utterances {
+            utterance.tell_position(audible);
+            if utterance.end().is_some_and(|end| end <= audible) {
+                utterance.tell_finished();
+                over.push(utterance.key);
+            } else if let Some(start) = utterance.start
+                && !utterance.ended
+                && written - start - utterance.covered() > STARVED_TICKS
+            {
+                utterance.tell_failed(
+                    ErrorCode::Busy,
+                    "nothing came for ten seconds; the utterance is over".to_owned(),
+                );
+                over.push(utterance.key);
+            }
+        }
+        for key in over {
+            self.remove(key);
+            self.cue(Cue::Done { key });
+        }
+    }
+
+    fn find(&mut self, key: u64) -> Option<&mut Utterance> {
+        self.utterances.iter_mut().find(|u| u.key == key)
+    }
+
+    fn remove(&mut self, key: u64) -> Option<Utterance> {
+        let at = self.utterances.iter().position(|u| u.key == key)?;
+        Some(self.utterances.remove(at))
+    }
+
+    /// The simulation thread empties its cues before every step, so a full channel empties at once;
+    /// without that thread there is nothing to go on for.
+    fn cue(&mut self, cue: Cue) {
+        self.quit |= self.cues.send(cue).is_err();
+    }
+}
+
+#[cfg(test)]
+mod tests;

@@ -1,0 +1,200 @@
+//! What the face is to do at any tick: the tracks of utterances on the timeline, and idle life under them.
+//!
+//! On the simulation thread. A function of the tick alone between two cues, so that a rewind finds
+//! what was there. Knows nothing of sound.
+
+use mouthpiece_rig::{Control, Controls, TICK_RATE};
+use mouthpiece_speech::{Idle, Speech, Track};
+
+use super::conductor::Cue;
+
+/// How long before its first sound a label can be felt: the reach of anticipation.
+const FELT_BEFORE_TICKS: i64 = TICK_RATE * 6 / 10;
+/// A stopped mouth goes to rest over this long; the tissue adds its own inertia.
+const RELAX_TICKS: i64 = TICK_RATE / 5;
+/// How long after its last label an utterance may still be felt.
+const FELT_AFTER_TICKS: i64 = TICK_RATE;
+
+/// An utterance on the timeline.
+#[derive(Debug)]
+struct Spoken {
+    key: u64,
+    start: i64,
+    track: Track,
+    /// Silent from here on.
+    stop: Option<i64>,
+    /// No more labels come.
+    done: bool,
+}
+
+/// The face's part.
+#[derive(Debug)]
+pub struct Score {
+    spoken: Vec<Spoken>,
+    rest: Controls,
+    idle: Idle,
+}
+
+impl Score {
+    pub fn new(speech: &Speech, idle: Idle) -> Self {
+        Self {
+            spoken: Vec::new(),
+            rest: speech.track(&[]).controls_at(0),
+            idle,
+        }
+    }
+
+    /// Takes a cue in; returns the first tick at which it changes anything.
+    pub fn take(&mut self, cue: Cue) -> i64 {
+        match cue {
+            Cue::Start { key, start, track } => {
+                let felt = start + track.start() - FELT_BEFORE_TICKS;
+                self.spoken.push(Spoken {
+                    key,
+                    start,
+                    track: *track,
+                    stop: None,
+                    done: false,
+                });
+                felt
+            }
+            Cue::Segments { key, segments } => {
+                let Some(spoken) = self.live(key) else {
+                    return i64::MAX;
+                };
+                let first = segments.first().map_or(i64::MAX, |s| s.start);
+                for segment in segments {
+                    spoken.track.push(segment);
+                }
+                first.saturating_add(spoken.start - FELT_BEFORE_TICKS)
+            }
+            Cue::Stop { key, at } => {
+                let Some(spoken) = self.live(key) else {
+                    return i64::MAX;
+                };
+                (spoken.stop, spoken.done) = (Some(at), true);
+                at
+            }
+            Cue::Done { key } => {
+                if let Some(spoken) = self.live(key) {
+                    spoken.done = true;
+                }
+                i64::MAX
+            }
+        }
+    }
+
+    /// What the head is told at `tick`.
+    pub fn controls_at(&self, tick: i64) -> Controls {
+        let mut controls = self.rest;
+        let mut speaking: f32 = 0.0;
+        for spoken in &self.spoken {
+            let share = spoken.share(tick);
+            if share <= 0.0 {
+                continue;
+            }
+            // A mouth that is stopped relaxes from where it was, not from where it would have been.
+            let local = tick.min(spoken.stop.unwrap_or(i64::MAX)) - spoken.start;
+            let told = spoken.track.controls_at(local);
+            for &control in Control::ALL {
+                controls[control] += (told[control] - self.rest[control]) * share;
+            }
+            speaking = speaking.max(spoken.track.speaking_at(local) * share);
+        }
+        let mut controls = controls.clamped();
+        self.idle.add(tick, speaking, &mut controls);
+        controls
+    }
+
+    /// Lets go of what is not felt any more at `tick`.
+    pub fn forget_before(&mut self, tick: i64) {
+        self.spoken.retain(|spoken| {
+            let end = spoken.start + spoken.track.end();
+            !spoken.done || spoken.stop.unwrap_or(i64::MAX).min(end) + FELT_AFTER_TICKS > tick
+        });
+    }
+
+    fn live(&mut self, key: u64) -> Option<&mut Spoken> {
+        // An utterance that had to begin again is there twice, the first time stopped.
+        self.spoken
+            .iter_mut()
+            .find(|s| s.key == key && s.stop.is_none())
+    }
+}
+
+impl Spoken {
+    /// 1 until it is stopped, then gently to 0.
+    fn share(&self, tick: i64) -> f32 {
+        let Some(stop) = self.stop else { return 1.0 };
+        let x = ((tick - stop) as f32 / RELAX_TICKS as f32).clamp(0.0, 1.0);
+        1.0 - x * x * (3.0 - 2.0 * x)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use mouthpiece_phonemes::{Phone, Segment};
+
+    fn speech() -> Speech {
+        Speech::with(|articulation| {
+            let mut controls = Controls::default();
+            controls[Control::Jaw] = articulation.jaw_rad;
+            controls
+        })
+        .unwrap()
+    }
+
+    fn jaw(score: &Score, tick: i64) -> f32 {
+        score.controls_at(tick)[Control::Jaw]
+    }
+
+    fn open_vowel() -> [Segment; 3] {
+        [
+            Segment::new(Phone::HSharp, 0, 9_600),
+            Segment::new(Phone::Aa, 9_600, 57_600),
+            Segment::new(Phone::HSharp, 57_600, 67_200),
+        ]
+    }
+
+    #[test]
+    fn an_utterance_is_felt_at_its_place_and_nowhere_else() {
+        let speech = speech();
+        let mut score = Score::new(&speech, Idle::new(1));
+        let rest = jaw(&score, 0);
+        let felt = score.take(Cue::Start {
+            key: 1,
+            start: 480_000,
+            track: Box::new(speech.track(&open_vowel())),
+        });
+        assert!(jaw(&score, 480_000 + 33_600) > rest + 0.05);
+        for tick in (0..felt).step_by(4_800) {
+            assert!((jaw(&score, tick) - rest).abs() < 1e-4, "at {tick}");
+        }
+        score.take(Cue::Done { key: 1 });
+        score.forget_before(480_000 + 67_200 + 2 * 48_000);
+        assert_eq!(jaw(&score, 480_000 + 33_600), rest, "forgotten");
+    }
+
+    #[test]
+    fn a_stopped_mouth_goes_to_rest_without_a_jump() {
+        let speech = speech();
+        let mut score = Score::new(&speech, Idle::new(1));
+        let rest = jaw(&score, 0);
+        score.take(Cue::Start {
+            key: 1,
+            start: 0,
+            track: Box::new(speech.track(&open_vowel())),
+        });
+        let at = 33_600;
+        let open = jaw(&score, at);
+        assert_eq!(score.take(Cue::Stop { key: 1, at }), at);
+        let mut last = open;
+        for tick in (at..at + RELAX_TICKS + 960).step_by(480) {
+            let now = jaw(&score, tick);
+            assert!(now <= last + 1e-6 && last - now < 0.02, "jumps at {tick}");
+            last = now;
+        }
+        assert!((last - rest).abs() < 1e-4);
+    }
+}
