@@ -1,1 +1,41 @@
-//! stub
+//! Mouthpiece's renderer: draws a [`Head`](mouthpiece_rig::Head) in the pose of a
+//! [`KeyFrame`](mouthpiece_rig::KeyFrame), to a window or an offscreen image, by the same code
+//! (HEADSHOP 4.4 for the skin, HABER 4.1 for eyes, teeth and tongue).
+//!
+//! # The life of a picture
+//! [`Gpu`] picks an adapter and says which. [`Renderer::new`] paints the maps of skin, eyes and hair
+//! on the processor (`maps`), turns the head's meshes into buffers (`geometry`) and its shaders into
+//! pipelines (`pipelines`). For each picture the skin's positions and normals and one uniform block
+//! (`gpu_data::Frame`) go up: where the bodies are, the camera ([`View`], [`Extent`]), the lamps
+//! (`studio`), and how far mouth and eyes are open (`openings`). Then two passes: depth as the key
+//! lamp sees it, and the picture. Each shader ends in the film's curve, so the resolve of the
+//! multisampled picture averages finished colours.
+//!
+//! [`Offscreen`] reads pictures back, two in flight; [`WindowTarget`] shows them. Neither knows
+//! of time: the caller says which key frame is now.
+
+#![forbid(unsafe_code)]
+
+mod geometry;
+mod gpu;
+mod gpu_data;
+mod maps;
+mod offscreen;
+mod openings;
+mod pipelines;
+mod renderer;
+mod shader;
+mod studio;
+mod targets;
+mod tier;
+mod upload;
+mod view;
+mod window;
+
+pub use gpu::{Gpu, GpuError};
+pub use offscreen::{FRAMES_IN_FLIGHT, Offscreen};
+pub use renderer::{RenderError, Renderer};
+pub use shader::ShaderError;
+pub use tier::{Tier, UnknownTier};
+pub use view::{Background, Camera, Extent, Framing, UnknownCamera, View};
+pub use window::{Outcome, WindowError, WindowTarget};

@@ -1,0 +1,83 @@
+//! What goes to the graphics card, as plain arrays. Keep in step with shaders/frame.wgsl,
+//! shaders/part.wgsl and shaders/skin.wgsl.
+
+use bytemuck::{Pod, Zeroable};
+
+/// The `Frame` of shaders/frame.wgsl.
+#[repr(C)]
+#[derive(Clone, Copy, Debug, Pod, Zeroable)]
+pub(crate) struct Frame {
+    pub(crate) clip_from_world: [[f32; 4]; 4],
+    pub(crate) shadow_from_world: [[f32; 4]; 4],
+    pub(crate) head_from_world: [[f32; 4]; 4],
+    pub(crate) bodies: [[[f32; 4]; 4]; 8],
+    pub(crate) eye: [f32; 4],
+    pub(crate) key_dir: [f32; 4],
+    pub(crate) fill_dir: [f32; 4],
+    pub(crate) rim_dir: [f32; 4],
+    pub(crate) key_colour: [f32; 4],
+    pub(crate) fill_colour: [f32; 4],
+    pub(crate) rim_colour: [f32; 4],
+    pub(crate) ambient: [[f32; 4]; 3],
+    pub(crate) mouth: [f32; 4],
+    pub(crate) mouth_height: [f32; 4],
+    pub(crate) eyeballs: [[f32; 4]; 2],
+    pub(crate) lids: [[f32; 4]; 4],
+    pub(crate) backdrop: [[f32; 4]; 2],
+    pub(crate) picture: [f32; 4],
+}
+
+/// The part of a skin vertex that moves: head's frame, mm.
+#[repr(C)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Pod, Zeroable)]
+pub(crate) struct SkinMoving {
+    pub(crate) position: [f32; 3],
+    pub(crate) normal: [f32; 3],
+}
+
+/// The part of a skin vertex that stays.
+#[repr(C)]
+#[derive(Clone, Copy, Debug, Default, Pod, Zeroable)]
+pub(crate) struct SkinStill {
+    pub(crate) uv: [f32; 2],
+    /// Share of the skull, vermilion, wet, occlusion; 255 is 1.
+    pub(crate) shares: [u8; 4],
+}
+
+/// A vertex of a part.
+#[repr(C)]
+#[derive(Clone, Copy, Debug, Default, Pod, Zeroable)]
+pub(crate) struct PartVertex {
+    pub(crate) rest: [f32; 3],
+    pub(crate) normal: [f32; 3],
+    pub(crate) uv: [f32; 2],
+    /// Occlusion, share of the second body, distance from the mesh's edge, unused; 255 is 1.
+    pub(crate) shares: [u8; 4],
+    /// Numbers of the two bodies, unused twice.
+    pub(crate) bodies: [u8; 4],
+}
+
+pub(crate) const SKIN_MOVING: wgpu::VertexBufferLayout<'static> = wgpu::VertexBufferLayout {
+    array_stride: size_of::<SkinMoving>() as u64,
+    step_mode: wgpu::VertexStepMode::Vertex,
+    attributes: &wgpu::vertex_attr_array![0 => Float32x3, 1 => Float32x3],
+};
+
+pub(crate) const SKIN_STILL: wgpu::VertexBufferLayout<'static> = wgpu::VertexBufferLayout {
+    array_stride: size_of::<SkinStill>() as u64,
+    step_mode: wgpu::VertexStepMode::Vertex,
+    attributes: &wgpu::vertex_attr_array![2 => Float32x2, 3 => Unorm8x4],
+};
+
+pub(crate) const PART: wgpu::VertexBufferLayout<'static> = wgpu::VertexBufferLayout {
+    array_stride: size_of::<PartVertex>() as u64,
+    step_mode: wgpu::VertexStepMode::Vertex,
+    attributes: &wgpu::vertex_attr_array![
+        0 => Float32x3, 1 => Float32x3, 2 => Float32x2, 3 => Unorm8x4, 4 => Uint8x4
+    ],
+};
+
+/// 0..1 as a byte.
+pub(crate) fn unorm(value: f32) -> u8 {
+    (value.clamp(0.0, 1.0) * 255.0 + 0.5) as u8
+}

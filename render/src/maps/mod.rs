@@ -1,0 +1,67 @@
+//! The maps of skin, eyes and hair, painted by program from a head's feature lines (HEADSHOP 4.4).
+//!
+//! The skin's maps cover the part of the chart that is seen: the face and both ears, 223 degrees of
+//! longitude, from 150 mm to -106 mm. So 2048 x 1024 texels give 6 texels a mm across the face, where
+//! the whole cylinder would give under 4; behind the ears there is hair, and at the edges the paint
+//! fades to plain skin, which the sampler extends.
+//!
+//! Colours are kept as the square root of linear light: the shader squares them, which costs less in
+//! software rendering than decoding sRGB. Nothing here knows of wgpu.
+
+pub(crate) mod brows;
+pub(crate) mod eye;
+pub(crate) mod hair;
+pub(crate) mod image;
+pub(crate) mod landmarks;
+pub(crate) mod noise;
+pub(crate) mod skin;
+pub(crate) mod strokes;
+
+use glam::{Vec2, vec2};
+
+/// Part of the chart that the skin's maps cover. Keep in step with shaders/skin.wgsl.
+pub(crate) const WINDOW_MIN: Vec2 = vec2(0.19, 0.0);
+/// See [`WINDOW_MIN`].
+pub(crate) const WINDOW_MAX: Vec2 = vec2(0.81, 1.0);
+/// A mean radius of the face, mm: turns longitude into length for textures' grain.
+pub(crate) const RADIUS: f32 = 92.0;
+/// Height of the whole chart, mm.
+pub(crate) const CHART_HEIGHT: f32 = 256.0;
+
+/// Runs `paint(row number, row)` over all rows, on as many threads as there are cores, up to 4.
+pub(crate) fn parallel_rows<T: Send>(values: &mut [T], width: usize, paint: impl Fn(usize, &mut [T]) + Sync) {
+    let height = values.len() / width.max(1);
+    let cores = std::thread::available_parallelism().map_or(1, usize::from).min(4);
+    if height < 64 || cores == 1 {
+        values.chunks_mut(width.max(1)).enumerate().for_each(|(y, row)| paint(y, row));
+        return;
+    }
+    // Interleaved bands, since the rows of a face are unequal work.
+    let band = height.div_ceil(cores * 4).max(1);
+    let bands = std::sync::Mutex::new(values.chunks_mut(band * width).enumerate());
+    let work = || {
+        loop {
+            let next = match bands.lock() {
+                Ok(mut bands) => bands.next(),
+                Err(_) => None,
+            };
+            let Some((number, rows)) = next else { return };
+            for (y, row) in rows.chunks_mut(width).enumerate() {
+                paint(number * band + y, row);
+            }
+        }
+    };
+    std::thread::scope(|scope| {
+        for _ in 1..cores {
+            // Where no thread is to be had the work is done here.
+            let _ = std::thread::Builder::new().name("paint maps".into()).spawn_scoped(scope, work);
+        }
+        work();
+    });
+}
+
+/// Smooth step from 0 at `from` to 1 at `to`, either way round.
+pub(crate) fn ramp(from: f32, to: f32, value: f32) -> f32 {
+    let t = ((value - from) / (to - from)).clamp(0.0, 1.0);
+    t * t * (3.0 - 2.0 * t)
+}

@@ -1,0 +1,435 @@
+//! Draws a head: owns its buffers, maps and pipelines, and writes one picture's commands.
+
+use glam::{Mat4, Vec3};
+use mouthpiece_rig::{Body, Head, KeyFrame, Material, Skin};
+use thiserror::Error;
+
+use crate::geometry::{PartGeometry, SkinGeometry};
+use crate::gpu::Gpu;
+use crate::gpu_data::{Frame, SkinMoving};
+use crate::maps;
+use crate::openings::Openings;
+use crate::pipelines::{Layouts, Pipelines};
+use crate::shader::ShaderError;
+use crate::studio::{Lamp, Studio};
+use crate::targets::{DEPTH, Targets, texture};
+use crate::tier::{Detail, Tier};
+use crate::upload;
+use crate::view::{Background, Extent, View, linear};
+
+/// Why a picture could not be drawn.
+#[derive(Debug, Error)]
+pub enum RenderError {
+    /// The key frame is of another head.
+    #[error("the key frame has {got} skin vertices but the head has {wanted}: draw frames of the head that was loaded")]
+    WrongHead {
+        /// Vertices of the head.
+        wanted: usize,
+        /// Vertices of the frame.
+        got: usize,
+    },
+    /// The picture is larger than the adapter can draw, or empty.
+    #[error("a picture of {width} x {height} pixels cannot be drawn: this graphics adapter does 1 to {max} a side")]
+    Size {
+        /// Wanted width.
+        width: u32,
+        /// Wanted height.
+        height: u32,
+        /// Longest side that can be had.
+        max: u32,
+    },
+    /// A shader file is broken.
+    #[error(transparent)]
+    Shader(#[from] ShaderError),
+    /// The driver was reset or the card is gone.
+    #[error("the graphics device was lost: open it again")]
+    DeviceLost,
+    /// The picture could not be read back.
+    #[error("the picture could not be read back from the graphics adapter: {0}")]
+    Readback(String),
+    /// More pictures were asked for than there are buffers.
+    #[error("{0} pictures are in flight already: take one first")]
+    Full(usize),
+}
+
+/// Buffers of one part material.
+#[derive(Debug)]
+struct PartBuffers {
+    vertices: wgpu::Buffer,
+    indices: wgpu::Buffer,
+    count: u32,
+}
+
+/// Share of the picture's height that the flash square takes.
+const FLASH_SHARE: f32 = 0.25;
+
+/// The head on the card, ready to be drawn in one target format.
+#[derive(Debug)]
+pub struct Renderer {
+    /// Only what [`Head::bodies`] needs.
+    pose: Head,
+    extent: Extent,
+    openings: Openings,
+    detail: Detail,
+    format: wgpu::TextureFormat,
+    samples: u32,
+    skin: SkinGeometry,
+    skin_moving: wgpu::Buffer,
+    skin_still: wgpu::Buffer,
+    skin_indices: wgpu::Buffer,
+    parts: Vec<(Material, PartBuffers)>,
+    pipelines: Pipelines,
+    frame: wgpu::Buffer,
+    frame_group: wgpu::BindGroup,
+    shadow_map: wgpu::TextureView,
+    shadow_group: wgpu::BindGroup,
+    skin_maps: wgpu::BindGroup,
+    eye_maps: wgpu::BindGroup,
+    hair_maps: wgpu::BindGroup,
+    targets: Option<Targets>,
+}
+
+impl Renderer {
+    /// Puts `head` on the card, for targets of `format` (sRGB or not: the picture is the same).
+    ///
+    /// # Errors
+    /// When a shader file is broken.
+    pub fn new(gpu: &Gpu, head: &Head, format: wgpu::TextureFormat, tier: Tier) -> Result<Self, RenderError> {
+        let device = gpu.device();
+        let detail = tier.detail();
+        let samples = gpu.samples(format, detail.samples);
+        let layouts = Layouts::new(device);
+        let pipelines = Pipelines::new(gpu, &layouts, format, samples, &detail)?;
+
+        let skin = SkinGeometry::of(head);
+        let vertex = wgpu::BufferUsages::VERTEX;
+        let skin_moving = upload::buffer(gpu, "skin, moving", &skin.moving, vertex | wgpu::BufferUsages::COPY_DST);
+        let skin_still = upload::buffer(gpu, "skin, still", &skin.still, vertex);
+        let skin_indices = upload::buffer(gpu, "skin", &skin.indices, wgpu::BufferUsages::INDEX);
+        let parts = DRAW_ORDER
+            .into_iter()
+            .filter_map(|material| {
+                let geometry = PartGeometry::of(head, material);
+                (!geometry.indices.is_empty()).then(|| {
+                    let buffers = PartBuffers {
+                        vertices: upload::buffer(gpu, "part", &geometry.vertices, vertex),
+                        indices: upload::buffer(gpu, "part", &geometry.indices, wgpu::BufferUsages::INDEX),
+                        count: geometry.indices.len() as u32,
+                    };
+                    (material, buffers)
+                })
+            })
+            .collect();
+
+        let frame = device.create_buffer(&wgpu::BufferDescriptor {
+            label: Some("frame"),
+            size: size_of::<Frame>() as u64,
+            usage: wgpu::BufferUsages::UNIFORM | wgpu::BufferUsages::COPY_DST,
+            mapped_at_creation: false,
+        });
+        let frame_group = group(device, &layouts.frame, &[frame.as_entire_binding()]);
+        let side = detail.shadow_map;
+        let shadow_map = texture(device, "shadow map", (side, side), DEPTH, 1, wgpu::TextureUsages::TEXTURE_BINDING)
+            .create_view(&wgpu::TextureViewDescriptor::default());
+        let compare = device.create_sampler(&wgpu::SamplerDescriptor {
+            label: Some("shadow"),
+            compare: Some(wgpu::CompareFunction::LessEqual),
+            mag_filter: wgpu::FilterMode::Linear,
+            min_filter: wgpu::FilterMode::Linear,
+            ..Default::default()
+        });
+        let shadow_group = group(
+            device,
+            &layouts.shadow,
+            &[wgpu::BindingResource::TextureView(&shadow_map), wgpu::BindingResource::Sampler(&compare)],
+        );
+
+        let skin_maps = maps::skin::paint(head, detail.map_width as usize);
+        let eye_map = upload::image(gpu, "eye", maps::eye::paint(detail.eye_map as usize));
+        let hair_map = upload::image(gpu, "hair", maps::hair::paint(detail.hair_map as usize));
+        let colour_map = upload::image(gpu, "skin colour", skin_maps.colour);
+        let detail_map = upload::image(gpu, "skin detail", skin_maps.detail);
+        let sampler = device.create_sampler(&wgpu::SamplerDescriptor {
+            label: Some("maps"),
+            mag_filter: wgpu::FilterMode::Linear,
+            min_filter: wgpu::FilterMode::Linear,
+            mipmap_filter: wgpu::MipmapFilterMode::Linear,
+            anisotropy_clamp: detail.anisotropy,
+            ..Default::default()
+        });
+        let maps_group = |first, second| {
+            let view = wgpu::BindingResource::TextureView;
+            group(device, &layouts.maps, &[wgpu::BindingResource::Sampler(&sampler), view(first), view(second)])
+        };
+        let (skin_maps, eye_maps, hair_maps) = (
+            maps_group(&colour_map, &detail_map),
+            maps_group(&eye_map, &eye_map),
+            maps_group(&hair_map, &hair_map),
+        );
+
+        let mut pose = head.clone();
+        pose.skin = Skin::default();
+        pose.parts.clear();
+        pose.features.clear();
+        Ok(Self {
+            pose,
+            extent: Extent::of(head),
+            openings: Openings::of(head),
+            detail,
+            format,
+            samples,
+            skin,
+            skin_moving,
+            skin_still,
+            skin_indices,
+            parts,
+            pipelines,
+            frame,
+            frame_group,
+            shadow_map,
+            shadow_group,
+            skin_maps,
+            eye_maps,
+            hair_maps,
+            targets: None,
+        })
+    }
+
+    /// The room the head takes up at rest.
+    #[must_use]
+    pub fn extent(&self) -> Extent {
+        self.extent
+    }
+
+    /// Draws one picture to `target`, which has the renderer's format and `size` pixels.
+    ///
+    /// # Errors
+    /// When the frame is of another head, the size cannot be drawn, or the device is gone.
+    pub fn draw(
+        &mut self,
+        gpu: &Gpu,
+        key_frame: &KeyFrame,
+        view: &View,
+        target: &wgpu::TextureView,
+        size: (u32, u32),
+    ) -> Result<(), RenderError> {
+        let mut encoder = gpu
+            .device()
+            .create_command_encoder(&wgpu::CommandEncoderDescriptor { label: Some("picture") });
+        self.encode(gpu, &mut encoder, key_frame, view, target, size)?;
+        gpu.queue().submit([encoder.finish()]);
+        Ok(())
+    }
+
+    /// Uploads what changed and writes the commands of one picture.
+    pub(crate) fn encode(
+        &mut self,
+        gpu: &Gpu,
+        encoder: &mut wgpu::CommandEncoder,
+        key_frame: &KeyFrame,
+        view: &View,
+        target: &wgpu::TextureView,
+        size: (u32, u32),
+    ) -> Result<(), RenderError> {
+        if gpu.is_lost() {
+            return Err(RenderError::DeviceLost);
+        }
+        let wanted = self.skin.vertex_count();
+        if key_frame.skin.len() != wanted {
+            return Err(RenderError::WrongHead {
+                wanted,
+                got: key_frame.skin.len(),
+            });
+        }
+        check_size(gpu, size)?;
+        if self.targets.as_ref().is_none_or(|t| t.size != size) {
+            self.targets = Some(Targets::new(gpu.device(), size, self.format, self.samples));
+        }
+        self.skin.set(&key_frame.skin);
+        gpu.queue()
+            .write_buffer(&self.skin_moving, 0, bytemuck::cast_slice::<SkinMoving, u8>(&self.skin.moving));
+        let frame = self.frame_data(key_frame, view, size);
+        gpu.queue().write_buffer(&self.frame, 0, bytemuck::bytes_of(&frame));
+        self.shadow_pass(encoder);
+        if let Some(targets) = &self.targets {
+            self.picture_pass(encoder, targets, target, view);
+        }
+        Ok(())
+    }
+
+    fn frame_data(&self, key_frame: &KeyFrame, view: &View, size: (u32, u32)) -> Frame {
+        let framing = self.extent.frame(view.camera, size);
+        let studio = Studio::portrait(view.camera.yaw_rad());
+        let bodies = self.pose.bodies(&key_frame.state).map(Mat4::from);
+        let open = self.openings.measure(&key_frame.skin);
+        let radius = self.pose.eye_radius;
+        let eye = self.pose.eye_centre;
+        let mut body_rows = [Mat4::IDENTITY.to_cols_array_2d(); 8];
+        for (row, body) in body_rows.iter_mut().zip(bodies) {
+            *row = body.to_cols_array_2d();
+        }
+        let direction = |lamp: &Lamp| lamp.direction.extend(lamp.half_angle).to_array();
+        let colour = |lamp: &Lamp| lamp.colour.extend(0.0).to_array();
+        let (middle, corner) = match view.background {
+            Background::Plain(c) => (linear(c), linear(c)),
+            Background::Studio(c) => (linear(c) * 1.25, linear(c) * 0.34),
+        };
+        let (width, height) = (size.0 as f32, size.1 as f32);
+        Frame {
+            clip_from_world: framing.clip_from_world.to_cols_array_2d(),
+            shadow_from_world: studio.shadow_from_world(&self.extent).to_cols_array_2d(),
+            head_from_world: bodies[Body::Skull as usize].inverse().to_cols_array_2d(),
+            bodies: body_rows,
+            eye: framing.eye.extend(studio.exposure).to_array(),
+            key_dir: direction(&studio.key),
+            fill_dir: direction(&studio.fill),
+            rim_dir: direction(&studio.rim),
+            key_colour: colour(&studio.key),
+            fill_colour: colour(&studio.fill),
+            rim_colour: colour(&studio.rim),
+            ambient: studio.ambient.map(|row| row.to_array()),
+            mouth: open.mouth.to_array(),
+            mouth_height: [open.mouth_half_height, 0.0, 0.0, 0.0],
+            eyeballs: [eye, eye * Vec3::new(-1.0, 1.0, 1.0)].map(|c| c.extend(radius).to_array()),
+            lids: open.lids.map(|lid| lid.to_array()),
+            backdrop: [middle.extend(width / height).to_array(), corner.extend(0.0).to_array()],
+            picture: [width, height, FLASH_SHARE, 0.0],
+        }
+    }
+
+    /// Depth from the key lamp: the skin and the hair cast shadows.
+    fn shadow_pass(&self, encoder: &mut wgpu::CommandEncoder) {
+        let mut pass = encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
+            label: Some("shadow"),
+            depth_stencil_attachment: Some(clear_depth(&self.shadow_map, wgpu::StoreOp::Store)),
+            ..Default::default()
+        });
+        pass.set_bind_group(0, &self.frame_group, &[]);
+        self.draw_skin(&mut pass, &self.pipelines.skin_shadow);
+        pass.set_pipeline(&self.pipelines.part_shadow);
+        for (_, buffers) in self.parts.iter().filter(|(m, _)| *m == Material::Hair) {
+            draw_part(&mut pass, buffers, 1);
+        }
+    }
+
+    fn picture_pass(
+        &self,
+        encoder: &mut wgpu::CommandEncoder,
+        targets: &Targets,
+        target: &wgpu::TextureView,
+        view: &View,
+    ) {
+        let mut pass = encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
+            label: Some("picture"),
+            color_attachments: &[Some(wgpu::RenderPassColorAttachment {
+                view: targets.colour.as_ref().unwrap_or(target),
+                depth_slice: None,
+                resolve_target: targets.colour.as_ref().map(|_| target),
+                ops: wgpu::Operations {
+                    load: wgpu::LoadOp::Clear(wgpu::Color::BLACK),
+                    store: if targets.colour.is_some() { wgpu::StoreOp::Discard } else { wgpu::StoreOp::Store },
+                },
+            })],
+            depth_stencil_attachment: Some(clear_depth(&targets.depth, wgpu::StoreOp::Discard)),
+            ..Default::default()
+        });
+        pass.set_bind_group(0, &self.frame_group, &[]);
+        pass.set_bind_group(1, &self.shadow_group, &[]);
+        for (material, buffers) in self.parts.iter().filter(|(m, _)| *m == Material::Hair) {
+            self.draw_material(&mut pass, *material, buffers);
+        }
+        pass.set_bind_group(2, &self.skin_maps, &[]);
+        self.draw_skin(&mut pass, &self.pipelines.skin);
+        for (material, buffers) in self.parts.iter().filter(|(m, _)| *m != Material::Hair) {
+            self.draw_material(&mut pass, *material, buffers);
+        }
+        pass.set_pipeline(&self.pipelines.backdrop);
+        pass.draw(0..3, 0..1);
+        if view.flash {
+            pass.set_pipeline(&self.pipelines.flash);
+            pass.draw(0..6, 0..1);
+        }
+    }
+
+    fn draw_skin(&self, pass: &mut wgpu::RenderPass<'_>, pipeline: &wgpu::RenderPipeline) {
+        pass.set_pipeline(pipeline);
+        pass.set_vertex_buffer(0, self.skin_moving.slice(..));
+        pass.set_vertex_buffer(1, self.skin_still.slice(..));
+        pass.set_index_buffer(self.skin_indices.slice(..), wgpu::IndexFormat::Uint32);
+        pass.draw_indexed(0..self.skin.indices.len() as u32, 0, 0..1);
+    }
+
+    fn draw_material(&self, pass: &mut wgpu::RenderPass<'_>, material: Material, buffers: &PartBuffers) {
+        let p = &self.pipelines;
+        let (pipeline, maps, instances) = match material {
+            Material::Hair => (&p.hair, Some(&self.hair_maps), self.detail.hair_shells),
+            Material::Eye => (&p.eye, Some(&self.eye_maps), 1),
+            Material::Teeth => (&p.teeth, None, 1),
+            Material::Gums => (&p.gums, None, 1),
+            Material::Tongue => (&p.tongue, None, 1),
+            Material::Cavity => (&p.cavity, None, 1),
+            Material::Lash => (&p.lash, None, 1),
+            Material::Cloth | Material::Skin => (&p.cloth, None, 1),
+        };
+        pass.set_pipeline(pipeline);
+        if let Some(maps) = maps {
+            pass.set_bind_group(2, maps, &[]);
+        }
+        draw_part(pass, buffers, instances);
+    }
+}
+
+/// Front to back as far as a head goes, so that what is hidden is not shaded. `Skin` is the head's
+/// own mesh: parts of that material do not occur.
+const DRAW_ORDER: [Material; 8] = [
+    Material::Hair,
+    Material::Cloth,
+    Material::Lash,
+    Material::Eye,
+    Material::Teeth,
+    Material::Gums,
+    Material::Tongue,
+    Material::Cavity,
+];
+
+fn draw_part(pass: &mut wgpu::RenderPass<'_>, buffers: &PartBuffers, instances: u32) {
+    pass.set_vertex_buffer(0, buffers.vertices.slice(..));
+    pass.set_index_buffer(buffers.indices.slice(..), wgpu::IndexFormat::Uint32);
+    pass.draw_indexed(0..buffers.count, 0, 0..instances);
+}
+
+fn clear_depth(view: &wgpu::TextureView, store: wgpu::StoreOp) -> wgpu::RenderPassDepthStencilAttachment<'_> {
+    wgpu::RenderPassDepthStencilAttachment {
+        view,
+        depth_ops: Some(wgpu::Operations {
+            load: wgpu::LoadOp::Clear(1.0),
+            store,
+        }),
+        stencil_ops: None,
+    }
+}
+
+fn group(device: &wgpu::Device, layout: &wgpu::BindGroupLayout, resources: &[wgpu::BindingResource<'_>]) -> wgpu::BindGroup {
+    let entries: Vec<wgpu::BindGroupEntry<'_>> = resources
+        .iter()
+        .enumerate()
+        .map(|(binding, resource)| wgpu::BindGroupEntry {
+            binding: binding as u32,
+            resource: resource.clone(),
+        })
+        .collect();
+    device.create_bind_group(&wgpu::BindGroupDescriptor {
+        label: None,
+        layout,
+        entries: &entries,
+    })
+}
+
+/// Whether the adapter can draw a picture of that size.
+pub(crate) fn check_size(gpu: &Gpu, (width, height): (u32, u32)) -> Result<(), RenderError> {
+    let max = gpu.device().limits().max_texture_dimension_2d;
+    if width == 0 || height == 0 || width > max || height > max {
+        return Err(RenderError::Size { width, height, max });
+    }
+    Ok(())
+}

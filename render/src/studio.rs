@@ -1,0 +1,77 @@
+//! The light: key, fill and rim lamps of a portrait studio, and the ambient light of its walls.
+//!
+//! The lamps follow the camera round the head by part of its angle, as a photographer would move
+//! them, so that every view is lit for its own sake.
+
+use glam::{Mat4, Vec3, Vec4, camera::rh, vec3};
+
+use crate::view::Extent;
+
+/// A lamp far away.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Lamp {
+    /// Towards it, unit length, world.
+    pub(crate) direction: Vec3,
+    /// Light that a white matte surface facing it returns, linear.
+    pub(crate) colour: Vec3,
+    /// Half the angle it fills, radians: the size of its picture in the eye.
+    pub(crate) half_angle: f32,
+}
+
+/// All the light of a picture.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Studio {
+    pub(crate) key: Lamp,
+    pub(crate) fill: Lamp,
+    pub(crate) rim: Lamp,
+    /// Rows a channel, to be multiplied with (direction, 1).
+    pub(crate) ambient: [Vec4; 3],
+    /// Brightness of the film.
+    pub(crate) exposure: f32,
+}
+
+/// How far the lamps follow the camera's angle.
+const FOLLOW: f32 = 0.62;
+
+impl Studio {
+    /// Lit for a camera at that angle round the head.
+    pub(crate) fn portrait(camera_yaw_rad: f32) -> Self {
+        let turn = camera_yaw_rad * FOLLOW;
+        let lamp = |azimuth_deg: f32, height_deg: f32, colour: Vec3, half_angle: f32| {
+            let (azimuth, height) = (azimuth_deg.to_radians() + turn, height_deg.to_radians());
+            Lamp {
+                direction: vec3(
+                    azimuth.sin() * height.cos(),
+                    height.sin(),
+                    azimuth.cos() * height.cos(),
+                ),
+                colour,
+                half_angle,
+            }
+        };
+        // Sky, side walls and floor as one linear function of direction.
+        let level = vec3(0.30, 0.31, 0.33);
+        let upward = vec3(0.13, 0.14, 0.16);
+        let forward = vec3(0.06, 0.055, 0.05);
+        let row = |c: usize| {
+            let forward = Vec3::new(turn.sin(), 0.0, turn.cos()) * forward[c];
+            (forward + Vec3::Y * upward[c]).extend(level[c])
+        };
+        Self {
+            key: lamp(-38.0, 34.0, vec3(1.52, 1.40, 1.25), 0.30),
+            fill: lamp(52.0, 6.0, vec3(0.40, 0.43, 0.48), 0.42),
+            rim: lamp(148.0, 28.0, vec3(0.95, 0.98, 1.05), 0.25),
+            ambient: [row(0), row(1), row(2)],
+            exposure: 0.72,
+        }
+    }
+
+    /// World to the key lamp's picture of the head: x and y -1..1, depth 0..1.
+    pub(crate) fn shadow_from_world(&self, extent: &Extent) -> Mat4 {
+        let centre = (extent.min + extent.max) * 0.5;
+        let radius = (extent.max - extent.min).length() * 0.5 * 0.94;
+        let from = centre + self.key.direction * (radius * 2.0);
+        rh::proj::directx::orthographic(-radius, radius, -radius, radius, radius * 0.5, radius * 3.5)
+            * rh::view::look_at_mat4(from, centre, Vec3::Y)
+    }
+}

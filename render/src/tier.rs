@@ -1,0 +1,106 @@
+//! How much work a picture may cost. The same picture up to detail; what differs is listed here
+//! and nowhere else.
+
+use std::str::FromStr;
+
+use thiserror::Error;
+
+/// A quality tier. Exports name one; it never changes by itself.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
+pub enum Tier {
+    /// For software rendering beside a running simulation.
+    Low,
+    /// The default.
+    #[default]
+    Medium,
+    /// For a real graphics card, or stills.
+    High,
+}
+
+/// The name is none of low, medium, high.
+#[derive(Debug, Error, PartialEq, Eq)]
+#[error("there is no tier {0:?}: use low, medium or high")]
+pub struct UnknownTier(pub String);
+
+impl FromStr for Tier {
+    type Err = UnknownTier;
+    fn from_str(name: &str) -> Result<Self, UnknownTier> {
+        match name {
+            "low" => Ok(Self::Low),
+            "medium" => Ok(Self::Medium),
+            "high" => Ok(Self::High),
+            _ => Err(UnknownTier(name.into())),
+        }
+    }
+}
+
+/// What a tier means in numbers.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Detail {
+    /// Samples a pixel, where offered.
+    pub(crate) samples: u32,
+    /// Width of the face maps in texels; they are half as high.
+    pub(crate) map_width: u32,
+    /// Side of the eye map in texels.
+    pub(crate) eye_map: u32,
+    /// Side of the key light's shadow map in texels.
+    pub(crate) shadow_map: u32,
+    /// Reads of the shadow map a pixel: 1, 4 or 9.
+    pub(crate) shadow_taps: u32,
+    /// Anisotropic samples; costly in software.
+    pub(crate) anisotropy: u16,
+    /// Side of the hair map in texels.
+    pub(crate) hair_map: u32,
+    /// Layers of hair above the scalp.
+    pub(crate) hair_shells: u32,
+}
+
+impl Tier {
+    /// All of them, cheapest first.
+    pub const ALL: [Self; 3] = [Self::Low, Self::Medium, Self::High];
+
+    /// The name used on the command line.
+    #[must_use]
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::Low => "low",
+            Self::Medium => "medium",
+            Self::High => "high",
+        }
+    }
+
+    pub(crate) const fn detail(self) -> Detail {
+        match self {
+            Self::Low => Detail {
+                samples: 1,
+                map_width: 1024,
+                eye_map: 256,
+                hair_map: 512,
+                shadow_map: 512,
+                shadow_taps: 1,
+                anisotropy: 1,
+                hair_shells: 2,
+            },
+            Self::Medium => Detail {
+                samples: 4,
+                map_width: 2048,
+                eye_map: 512,
+                hair_map: 1024,
+                shadow_map: 1024,
+                shadow_taps: 4,
+                anisotropy: 1,
+                hair_shells: 4,
+            },
+            Self::High => Detail {
+                samples: 4,
+                map_width: 4096,
+                eye_map: 1024,
+                hair_map: 1024,
+                shadow_map: 2048,
+                shadow_taps: 9,
+                anisotropy: 8,
+                hair_shells: 10,
+            },
+        }
+    }
+}

@@ -1,0 +1,170 @@
+//! A window's surface: configured, reconfigured when it changes, made anew when it is lost. The event
+//! loop is the caller's; nothing here panics when the window is hidden, minimised or dragged between screens.
+
+use std::sync::Arc;
+
+use mouthpiece_rig::{Head, KeyFrame};
+use wgpu::rwh::{HasDisplayHandle, HasWindowHandle};
+
+use crate::gpu::{Gpu, GpuError};
+use crate::renderer::{RenderError, Renderer};
+use crate::tier::Tier;
+use crate::view::View;
+
+/// What became of a picture.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Outcome {
+    /// Handed to the screen.
+    Shown,
+    /// The window is covered, minimised or has no area: draw again when that changes, or after a
+    /// tenth of a second.
+    Hidden,
+    /// The screen did not take it in time, or the surface had to be set up again: draw again.
+    Retry,
+}
+
+type MakeSurface = Box<dyn Fn(&wgpu::Instance) -> Result<wgpu::Surface<'static>, wgpu::CreateSurfaceError> + Send>;
+
+/// A window that heads are drawn to.
+pub struct WindowTarget {
+    // Dropped first: before the window that `make_surface` keeps.
+    surface: wgpu::Surface<'static>,
+    renderer: Renderer,
+    gpu: Gpu,
+    config: wgpu::SurfaceConfiguration,
+    /// The window's size in pixels, perhaps 0.
+    size: (u32, u32),
+    max_side: u32,
+    make_surface: MakeSurface,
+}
+
+impl std::fmt::Debug for WindowTarget {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.debug_struct("WindowTarget").field("gpu", &self.gpu).field("size", &self.size).finish_non_exhaustive()
+    }
+}
+
+/// Why a window cannot be drawn to.
+#[derive(Debug, thiserror::Error)]
+pub enum WindowError {
+    /// No adapter, device or surface.
+    #[error(transparent)]
+    Gpu(#[from] GpuError),
+    /// The head cannot be drawn.
+    #[error(transparent)]
+    Render(#[from] RenderError),
+}
+
+impl WindowTarget {
+    /// Ready to draw `head` to `window`, which has `size` pixels. Call from the thread of the event loop.
+    ///
+    /// # Errors
+    /// When no adapter can draw to this window.
+    pub fn new<W>(window: Arc<W>, size: (u32, u32), head: &Head, tier: Tier) -> Result<Self, WindowError>
+    where
+        W: HasWindowHandle + HasDisplayHandle + std::fmt::Debug + Send + Sync + 'static,
+    {
+        let mut descriptor =
+            wgpu::InstanceDescriptor::new_with_display_handle_from_env(Box::new(Arc::clone(&window)));
+        if wgpu::Backends::from_env().is_none() {
+            descriptor.backends = wgpu::Backends::PRIMARY | wgpu::Backends::GL;
+        }
+        let instance = wgpu::Instance::new(descriptor);
+        let make_surface: MakeSurface = Box::new(move |instance| instance.create_surface(Arc::clone(&window)));
+        let surface = make_surface(&instance).map_err(GpuError::Surface)?;
+        let gpu = Gpu::for_window(&instance, &surface)?;
+        let config = configuration(&gpu, &surface)?;
+        let renderer = Renderer::new(&gpu, head, config.format, tier)?;
+        let max_side = gpu.device().limits().max_texture_dimension_2d;
+        let mut target = Self {
+            surface,
+            renderer,
+            gpu,
+            config,
+            size: (0, 0),
+            max_side,
+            make_surface,
+        };
+        target.resize(size);
+        Ok(target)
+    }
+
+    /// The device drawn with.
+    #[must_use]
+    pub fn gpu(&self) -> &Gpu {
+        &self.gpu
+    }
+
+    /// Takes over the window's new size; one without area only stops the drawing.
+    pub fn resize(&mut self, size: (u32, u32)) {
+        self.size = size;
+        if size.0 == 0 || size.1 == 0 {
+            return;
+        }
+        // A window may span screens that together are larger than an image can be.
+        self.config.width = size.0.min(self.max_side);
+        self.config.height = size.1.min(self.max_side);
+        self.surface.configure(self.gpu.device(), &self.config);
+    }
+
+    /// Draws and shows one picture. With winit, call `pre_present_notify` before it.
+    ///
+    /// # Errors
+    /// When the frame is of another head, or the device is lost: then make a new `WindowTarget`.
+    pub fn draw(&mut self, key_frame: &KeyFrame, view: &View) -> Result<Outcome, WindowError> {
+        use wgpu::CurrentSurfaceTexture as Acquired;
+        if self.gpu.is_lost() {
+            return Err(RenderError::DeviceLost.into());
+        }
+        if self.size.0 == 0 || self.size.1 == 0 {
+            return Ok(Outcome::Hidden);
+        }
+        let (texture, stale) = match self.surface.get_current_texture() {
+            Acquired::Success(texture) => (texture, false),
+            Acquired::Suboptimal(texture) => (texture, true),
+            Acquired::Occluded => return Ok(Outcome::Hidden),
+            Acquired::Timeout => return Ok(Outcome::Retry),
+            Acquired::Outdated | Acquired::Validation => {
+                self.surface.configure(self.gpu.device(), &self.config);
+                return Ok(Outcome::Retry);
+            }
+            Acquired::Lost => {
+                tracing::warn!("the window's surface was lost; making a new one");
+                self.surface = (self.make_surface)(self.gpu.instance()).map_err(GpuError::Surface)?;
+                self.surface.configure(self.gpu.device(), &self.config);
+                return Ok(Outcome::Retry);
+            }
+        };
+        let target = texture.texture.create_view(&wgpu::TextureViewDescriptor::default());
+        let size = (texture.texture.width(), texture.texture.height());
+        self.renderer.draw(&self.gpu, key_frame, view, &target, size)?;
+        self.gpu.queue().present(texture);
+        if stale {
+            self.surface.configure(self.gpu.device(), &self.config);
+        }
+        Ok(Outcome::Shown)
+    }
+}
+
+/// The surface's best settings: an sRGB format if there is one, in step with the screen, no queue of
+/// old pictures.
+fn configuration(gpu: &Gpu, surface: &wgpu::Surface<'_>) -> Result<wgpu::SurfaceConfiguration, GpuError> {
+    let unsupported = || GpuError::UnsupportedSurface {
+        adapter: gpu.info().name.clone(),
+    };
+    let mut config = surface.get_default_config(gpu.adapter(), 1, 1).ok_or_else(unsupported)?;
+    let formats = surface.get_capabilities(gpu.adapter()).formats;
+    let eight_bit = |f: &wgpu::TextureFormat| {
+        use wgpu::TextureFormat as F;
+        matches!(f, F::Bgra8UnormSrgb | F::Rgba8UnormSrgb | F::Bgra8Unorm | F::Rgba8Unorm)
+    };
+    config.format = formats
+        .iter()
+        .copied()
+        .find(|f| eight_bit(f) && f.is_srgb())
+        .or_else(|| formats.iter().copied().find(eight_bit))
+        .ok_or_else(unsupported)?;
+    config.present_mode = wgpu::PresentMode::AutoVsync;
+    config.desired_maximum_frame_latency = 1;
+    Ok(config)
+}
