@@ -246,3 +246,9 @@ pub fn normals(positions: &[Vec3], triangles: &[[u32; 3]]) -> Vec<Vec3> {
     }
     sums.into_iter().map(|n| n.normalize_or(Vec3::Z)).collect()
 }
+
+/// Smooth step from 0 at `from` to 1 at `to`, either way round.
+pub(crate) fn ramp(from: f32, to: f32, value: f32) -> f32 {
+    let share = ((value - from) / (to - from)).clamp(0.0, 1.0);
+    share * share * (3.0 - 2.0 * share)
+}

@@ -1,12 +1,43 @@
-//! stub
-pub mod articulation;
-pub mod control;
-pub mod head;
-pub mod key_frame;
-pub mod muscle;
+//! The head at run time: what it is made of, what moves it, how its mouth is read.
+//!
+//! | module | holds |
+//! |---|---|
+//! | `articulation` | what a mouth should do, for any head |
+//! | `calibration` | an articulation turned into one head's muscles |
+//! | `control` | one number per muscle, jaw, tongue, lid, gaze and head angle |
+//! | `head` | a head as data: skin, rigid parts, the bodies they hang on |
+//! | `reference` | the head that is built in, made by program |
+//! | `muscle` | fibres: linear and sphincter (HABER 5.1) |
+//! | `tissue` | the springs of the skin (HEADSHOP 4.2) |
+//! | `contact` | lips, teeth, lids and eyeballs stop each other |
+//! | `simulation` | steps all of it in time |
+//! | `key_frame` | the whole state at an instant |
+//! | `measure` | aperture, width, protrusion, jaw of a key frame |
+//! | `occlusion` | ambient light that reaches each vertex at rest |
+//!
+//! Millimetres, seconds and radians; +y up, +z out of the face, +x to the subject's left. Stiffness
+//! and damping are per unit of mass. This crate knows neither phones nor pixels.
+#![forbid(unsafe_code)]
+
+mod articulation;
+mod calibration;
+mod contact;
+mod control;
+mod head;
+mod key_frame;
+mod measure;
+mod muscle;
 mod occlusion;
-pub mod reference;
-pub use articulation::*;
-pub use control::*;
-pub use head::*;
-pub use key_frame::*;
+mod reference;
+mod simulation;
+mod tissue;
+
+pub use articulation::{Articulation, Tongue};
+pub use calibration::{Calibration, CalibrationError};
+pub use control::{Control, Controls, Muscle};
+pub use head::{Body, Feature, Head, LIP_LEVELS, Lid, Lips, Material, Mesh, Part, Skin, normals};
+pub use key_frame::{KeyFrame, TICK_RATE};
+pub use measure::{Measures, measure};
+pub use muscle::{Contraction, Fibre};
+pub use reference::ReferenceError;
+pub use simulation::{STEP_TICKS, Simulation};

@@ -3,7 +3,8 @@
 //! HABER 4.2 and 5.1. Contraction, straightening under tension, the two-part orbicularis oris with a
 //! central axis, protrusion along it and a gradient from inner to outer fibre are here; bulging and
 //! the springs between merged muscles are not yet. Where the paper gives no number (how much a
-//! fibre shortens, how far lips protrude), the constants below are judgements.
+//! fibre shortens, how far lips protrude), the constants below are judgements. Where muscles merge
+//! into the orbicularis oris, their insertions take its fibres along ([`merges`]).
 
 use glam::{Affine3A, Vec3, vec3};
 use serde::Deserialize;
@@ -16,7 +17,7 @@ const LINEAR_SHORTENING: f32 = 0.36;
 /// Shrinking of a sphincter towards its axis at full contraction.
 const SPHINCTER_SHRINKING: f32 = 0.5;
 /// Protrusion of the innermost fibre at 1, mm, and the share that the outermost takes of it.
-const PROTRUSION_MM: f32 = 9.0;
+const PROTRUSION_MM: f32 = 12.0;
 const OUTER_PROTRUSION: f32 = 0.12;
 
 /// How a fibre contracts.
@@ -96,6 +97,71 @@ impl Fibre {
             *q = q.lerp(straight, tension);
         }
     }
+}
+
+/// A control point of a sphincter that a linear muscle's insertion takes along.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Merge {
+    /// The sphincter's fibre and point.
+    pub fibre: usize,
+    pub point: usize,
+    /// The linear fibre that inserts there, and the share of its pull that arrives.
+    pub puller: usize,
+    pub share: f32,
+}
+
+/// A linear muscle takes the sphincter's points within this distance of its insertion along, mm.
+const MERGE_REACH_MM: f32 = 17.0;
+
+/// Where linear muscles merge into the orbicularis oris. Raisers of the upper lip do not reach the
+/// lower half, depressors of the lower lip not the upper one.
+pub(crate) fn merges(fibres: &[Fibre]) -> Vec<Merge> {
+    use Muscle::{
+        DepressorLabiiInferioris, LevatorLabiiSuperioris, LevatorLabiiSuperiorisAlaequeNasi,
+        Mentalis, OrbicularisOrisInferior, OrbicularisOrisSuperior, ZygomaticusMinor,
+    };
+    let mut merges = Vec::new();
+    for (f, sphincter) in fibres.iter().enumerate() {
+        if sphincter.contraction == Contraction::Linear {
+            continue;
+        }
+        for (p, place) in sphincter.points.iter().enumerate() {
+            let start = merges.len();
+            for (l, linear) in fibres.iter().enumerate() {
+                let apart = match linear.muscle {
+                    LevatorLabiiSuperioris
+                    | LevatorLabiiSuperiorisAlaequeNasi
+                    | ZygomaticusMinor => sphincter.muscle == OrbicularisOrisInferior,
+                    DepressorLabiiInferioris => sphincter.muscle == OrbicularisOrisSuperior,
+                    Mentalis => true,
+                    _ => false,
+                };
+                let Some(&insertion) = linear.points.last() else {
+                    continue;
+                };
+                let near = 1.0 - insertion.distance(*place) / MERGE_REACH_MM;
+                if linear.contraction == Contraction::Linear && !apart && near > 0.0 {
+                    merges.push(Merge {
+                        fibre: f,
+                        point: p,
+                        puller: l,
+                        share: near.sqrt(),
+                    });
+                }
+            }
+            // Fibres of one muscle share the point: together they pull no harder than one.
+            for i in start..merges.len() {
+                let muscle = fibres[merges[i].puller].muscle;
+                let alike: f32 = merges[start..]
+                    .iter()
+                    .filter(|m| fibres[m.puller].muscle == muscle)
+                    .map(|m| m.share)
+                    .sum();
+                merges[i].share *= merges[i].share / alike.max(1.0);
+            }
+        }
+    }
+    merges
 }
 
 /// A point that follows the mandible by a share.

@@ -28,7 +28,7 @@ pub(crate) fn bake(head: &mut Head) {
     let bvh = build_bvh2_from_tris(
         &triangles,
         BvhBuildParams::fast_build(),
-        &mut std::time::Duration::ZERO,
+        &mut std::time::Duration::default(),
     );
     let directions = spiral();
     let seen = |origin: Vec3, normal: Vec3| {

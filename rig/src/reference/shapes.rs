@@ -4,12 +4,7 @@ use glam::{Vec2, Vec3, vec2};
 
 use crate::Mesh;
 use crate::head::normals;
-
-/// Smooth step from 0 at `from` to 1 at `to`, either way round.
-pub(super) fn ramp(from: f32, to: f32, value: f32) -> f32 {
-    let share = ((value - from) / (to - from)).clamp(0.0, 1.0);
-    share * share * (3.0 - 2.0 * share)
-}
+pub(super) use crate::head::ramp;
 
 /// A grid of `columns` x `rows` cells over (u, v) in 0..1, joined at u = 0 and 1 where `closed`.
 /// Seen from the side where u grows to the right and v downwards, triangles are counter-clockwise.

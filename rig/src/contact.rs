@@ -1,0 +1,180 @@
+//! Contact: lips stop each other, lips stay in front of the teeth, lids stay outside the eyeballs.
+//!
+//! Resolved on positions after each step (and on velocities with them, without rebound). Lips are
+//! compared column by column: both lips' columns were built over one another, and the muscles move
+//! them sideways together.
+
+use glam::{Affine3A, Vec3, vec3};
+
+use crate::Head;
+use crate::head::LIP_LEVELS;
+
+/// Levels of a lip's column that can touch the other lip.
+const TOUCHING: std::ops::RangeInclusive<usize> = 1..=6;
+/// Share of an overlap that one pass removes; two passes run.
+const PASS_SHARE: f32 = 0.5;
+/// Skin keeps this far from the teeth and the eyeballs, mm.
+const CLEARANCE_MM: f32 = 0.4;
+
+/// The contacts of one head, by simulated vertex numbers.
+#[derive(Clone, Debug)]
+pub(crate) struct Contact {
+    /// Pairs of columns: upper and lower lip.
+    columns: Vec<([u32; LIP_LEVELS], [u32; LIP_LEVELS])>,
+    /// Vertices near each eye: left, right.
+    lids: [Vec<u32>; 2],
+    eye_centre: Vec3,
+    eye_radius: f32,
+}
+
+/// The skin's state that contact corrects.
+pub(crate) struct Bodies<'a> {
+    pub position: &'a mut [Vec3],
+    pub velocity: &'a mut [Vec3],
+}
+
+impl Contact {
+    /// `number` maps skin vertices to simulated ones.
+    pub(crate) fn new(head: &Head, number: impl Fn(u32) -> u32) -> Self {
+        let columns = head
+            .lips
+            .upper
+            .iter()
+            .zip(&head.lips.lower)
+            .skip(1)
+            .take(head.lips.upper.len().saturating_sub(2))
+            .map(|(u, l)| (u.map(&number), l.map(&number)))
+            .collect();
+        let mut lids = [Vec::new(), Vec::new()];
+        for lid in &head.lids {
+            lids[usize::from(!lid.left)].push(number(lid.vertex));
+        }
+        Self {
+            columns,
+            lids,
+            eye_centre: head.eye_centre,
+            eye_radius: head.eye_radius,
+        }
+    }
+
+    /// Resolves everything; `lips` is false while calibrating, where targets past contact count.
+    pub(crate) fn resolve(&self, skin: &mut Bodies<'_>, mandible: &Affine3A, lips: bool) {
+        if lips {
+            self.lips(skin);
+        }
+        self.teeth(skin, mandible);
+        self.eyeballs(skin);
+    }
+
+    fn lips(&self, skin: &mut Bodies<'_>) {
+        for pass in 0..2 {
+            for (upper, lower) in &self.columns {
+                // Alternate who is tested against whom, so that neither lip wins.
+                for turn in 0..2 {
+                    if (turn + pass) % 2 == 0 {
+                        press(skin, lower, upper, 1.0);
+                    } else {
+                        press(skin, upper, lower, -1.0);
+                    }
+                }
+            }
+        }
+    }
+
+    /// Keeps the inner side of the lips in front of both rows of teeth.
+    fn teeth(&self, skin: &mut Bodies<'_>, mandible: &Affine3A) {
+        let unjawed = mandible.inverse();
+        for (upper, lower) in &self.columns {
+            for &i in upper[2..].iter().chain(&lower[2..]) {
+                let i = i as usize;
+                let p = skin.position[i];
+                let up = in_front(p, UPPER_EDGE_Y, 14.0, UPPER_FRONT_Z);
+                let q = unjawed.transform_point3(p);
+                let low = in_front(q, LOWER_EDGE_Y - 14.0, 14.0, LOWER_FRONT_Z);
+                let push = up.max(low);
+                if push > 0.0 {
+                    skin.position[i].z += push;
+                    skin.velocity[i].z = skin.velocity[i].z.max(0.0);
+                }
+            }
+        }
+    }
+
+    fn eyeballs(&self, skin: &mut Bodies<'_>) {
+        for (list, side) in self.lids.iter().zip([1.0, -1.0]) {
+            let centre = self.eye_centre * vec3(side, 1.0, 1.0);
+            let least = self.eye_radius + CLEARANCE_MM;
+            for &i in list {
+                let i = i as usize;
+                let out = skin.position[i] - centre;
+                let distance = out.length();
+                if distance < least && distance > 1.0 {
+                    let normal = out / distance;
+                    skin.position[i] = centre + normal * least;
+                    let inwards = skin.velocity[i].dot(normal).min(0.0);
+                    skin.velocity[i] -= normal * inwards;
+                }
+            }
+        }
+    }
+}
+
+/// Heights of the biting edges and how far forward the incisors' fronts stand, mm at rest.
+pub(crate) const UPPER_EDGE_Y: f32 = -35.3;
+const LOWER_EDGE_Y: f32 = -34.0;
+const UPPER_FRONT_Z: f32 = 106.6;
+const LOWER_FRONT_Z: f32 = 103.6;
+
+/// Front of the upper incisors' biting edge at `x`.
+pub(crate) fn upper_edge(x: f32) -> Vec3 {
+    vec3(x, UPPER_EDGE_Y, UPPER_FRONT_Z - setback(x))
+}
+
+/// How far the arch recedes at `x` from the mid line.
+fn setback(x: f32) -> f32 {
+    8.5 * (x / 17.0).powi(2)
+}
+
+/// How deep a point lies behind the front of a row of teeth that starts at `bottom`.
+fn in_front(p: Vec3, bottom: f32, height: f32, front: f32) -> f32 {
+    // Only the front teeth: further back the cheek lies well outside the arch.
+    let inside = p.x.abs() < 18.0 && (0.0..height).contains(&(p.y - bottom));
+    if inside {
+        front + CLEARANCE_MM - setback(p.x) - p.z
+    } else {
+        0.0
+    }
+}
+
+/// Pushes each touching vertex of `a` out of the chain `b`; `sense` is 1 where `a` lies below `b`.
+fn press(skin: &mut Bodies<'_>, a: &[u32; LIP_LEVELS], b: &[u32; LIP_LEVELS], sense: f32) {
+    for &i in &a[TOUCHING] {
+        let i = i as usize;
+        for w in b[TOUCHING].windows(2) {
+            let (j, k) = (w[0] as usize, w[1] as usize);
+            let (p, q, r) = (skin.position[i], skin.position[j], skin.position[k]);
+            let (high, low) = (q.z.max(r.z), q.z.min(r.z));
+            if p.z > high || p.z < low || high - low < 1e-3 {
+                continue;
+            }
+            let share = ((p.z - q.z) / (r.z - q.z)).clamp(0.0, 1.0);
+            let overlap = sense * (p.y - (q.y + (r.y - q.y) * share));
+            if overlap <= 0.0 || overlap > 12.0 {
+                continue;
+            }
+            let shift = sense * overlap * PASS_SHARE;
+            skin.position[i].y -= shift;
+            skin.position[j].y += shift * (1.0 - share);
+            skin.position[k].y += shift * share;
+            // No rebound: both sides take the mean of their vertical speeds if they approach.
+            let other = skin.velocity[j].y * (1.0 - share) + skin.velocity[k].y * share;
+            let approach = sense * (skin.velocity[i].y - other);
+            if approach > 0.0 {
+                let half = 0.5 * sense * approach;
+                skin.velocity[i].y -= half;
+                skin.velocity[j].y += half * (1.0 - share);
+                skin.velocity[k].y += half * share;
+            }
+        }
+    }
+}
