@@ -5,7 +5,7 @@ use std::collections::BTreeMap;
 use std::sync::Arc;
 
 use mouthpiece_phonemes::{Phone, Segment};
-use mouthpiece_rig::{Articulation, Control, Controls};
+use mouthpiece_rig::{Articulation, Calibration, Control, Controls};
 use thiserror::Error;
 
 use crate::blend::{Curve, ticks};
@@ -42,6 +42,14 @@ pub struct Speech {
 }
 
 impl Speech {
+    /// The built-in tables for a calibrated head.
+    ///
+    /// # Errors
+    /// When the calibration gives something that is not a number.
+    pub fn new(calibration: &Calibration) -> Result<Self, SpeechError> {
+        Self::with(|articulation| calibration.controls(articulation))
+    }
+
     /// The built-in tables for whatever turns an articulation into controls.
     ///
     /// # Errors
