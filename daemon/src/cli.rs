@@ -8,6 +8,7 @@ mod values;
 use std::path::PathBuf;
 
 use clap::{ArgAction, Args, Parser, Subcommand, ValueEnum};
+use mouthpiece_render::{Background, Camera, Tier, View};
 
 pub use values::{Fps, Rgb, Size};
 
@@ -105,7 +106,10 @@ pub struct InputArgs {
     /// The sentence that comes with the program, instead of files
     #[arg(long, conflicts_with_all = ["labels", "audio"])]
     pub demo: bool,
-    /// Label times are counted at this rate
+    /// Format of the labels [default: by their name and content]
+    #[arg(long, value_name = "FMT", value_parser = values::label_formats())]
+    pub from: Option<String>,
+    /// Label times are counted at this rate, where their format counts samples
     #[arg(long, value_name = "HZ", default_value_t = 16_000,
           value_parser = clap::value_parser!(u32).range(1..=768_000))]
     pub label_rate: u32,
@@ -186,37 +190,32 @@ pub struct CurvesArgs {
 /// Read a label file, check it, and write it as another
 #[derive(Debug, Args)]
 #[command(
-    after_help = "Examples:\n  mouthpiece labels hello.phn\n  mouthpiece labels hello.phn --json\n  mouthpiece labels hello.phn --rate 48000 --to phn -o hello16k.phn"
+    after_help = "Examples:\n  mouthpiece labels hello.phn\n  mouthpiece labels hello.phn --json\n  mouthpiece labels hello48k.phn --rate 48000 -o hello.phn"
 )]
 pub struct LabelsArgs {
     /// The label file, `-` for standard input
     #[arg(value_name = "F")]
     pub file: PathBuf,
-    /// Its format [default: by name]
-    #[arg(long, value_enum, value_name = "FMT")]
-    pub from: Option<LabelFormat>,
-    /// The format to write [default: as read]
-    #[arg(long, value_enum, value_name = "FMT")]
-    pub to: Option<LabelFormat>,
-    /// Times in the file are counted at this rate; what is written is counted at 16 kHz
+    /// Its format [default: by its name and content]
+    #[arg(long, value_name = "FMT", value_parser = values::label_formats())]
+    pub from: Option<String>,
+    /// The format to write [default: TIMIT]
+    #[arg(long, value_name = "FMT", value_parser = values::label_formats())]
+    pub to: Option<String>,
+    /// Times in the file are counted at this rate, where its format counts samples
     #[arg(long, value_name = "HZ", default_value_t = 16_000,
           value_parser = clap::value_parser!(u32).range(1..=768_000))]
     pub rate: u32,
+    /// Times in what is written are counted at this rate
+    #[arg(long, value_name = "HZ", default_value_t = 16_000,
+          value_parser = clap::value_parser!(u32).range(1..=768_000))]
+    pub out_rate: u32,
     /// Where to write [default: standard output]
     #[arg(short, long, value_name = "F")]
     pub output: Option<PathBuf>,
     /// Print what was read, and what is odd about it, as JSON
     #[arg(long, conflicts_with = "to")]
     pub json: bool,
-}
-
-/// A label format that can be read or written.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
-pub enum LabelFormat {
-    /// TIMIT phones
-    Phn,
-    /// TIMIT words
-    Wrd,
 }
 
 /// One picture
@@ -272,6 +271,46 @@ pub enum ViewArg {
     /// Half way between the two
     #[value(name = "34")]
     ThreeQuarter,
+}
+
+/// What was asked for cannot be meant: exit status 2, as for what clap finds itself.
+#[derive(Debug, thiserror::Error)]
+#[error("{0}")]
+pub struct Usage(pub String);
+
+impl TierArg {
+    /// The word on the command line.
+    pub fn name(self) -> &'static str {
+        Tier::from(self).name()
+    }
+}
+
+impl From<TierArg> for Tier {
+    fn from(tier: TierArg) -> Self {
+        match tier {
+            TierArg::Low => Self::Low,
+            TierArg::Medium => Self::Medium,
+            TierArg::High => Self::High,
+        }
+    }
+}
+
+impl LookArgs {
+    /// How the renderer is to look at the head.
+    pub fn view(&self) -> View {
+        let view = View::default();
+        View {
+            camera: match self.view {
+                ViewArg::Front => Camera::Front,
+                ViewArg::Side => Camera::Side,
+                ViewArg::ThreeQuarter => Camera::ThreeQuarter,
+            },
+            background: self
+                .background
+                .map_or(view.background, |Rgb(c)| Background::Plain(c)),
+            ..view
+        }
+    }
 }
 
 #[cfg(test)]

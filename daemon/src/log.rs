@@ -2,18 +2,22 @@
 
 use tracing_subscriber::EnvFilter;
 
-/// Starts logging. Commands that end by themselves say only what is wrong unless asked for more;
-/// the daemon also says what it chose.
-pub fn start(verbose: u8, daemon: bool) {
-    let fallback = match (verbose, daemon) {
-        (0, false) => "warn",
-        (0, true) | (1, _) => "warn,mouthpiece=info,mouthpiece_render=info",
-        _ => "info,mouthpiece=debug,mouthpiece_render=debug",
-    };
-    let filter = EnvFilter::try_from_default_env().unwrap_or_else(|_| EnvFilter::new(fallback));
-    tracing_subscriber::fmt()
+/// Starts logging. Commands that end by themselves say only what is wrong unless asked for more,
+/// in plain lines; a live face also says what it chose, and when.
+pub fn start(verbose: u8, live: bool) {
+    let filter = EnvFilter::try_from_default_env().unwrap_or_else(|_| {
+        EnvFilter::new(match (verbose, live) {
+            (0, false) => "warn",
+            (0, true) | (1, _) => "warn,mouthpiece=info,mouthpiece_render=info",
+            _ => "info,mouthpiece=debug,mouthpiece_render=debug",
+        })
+    });
+    let lines = tracing_subscriber::fmt()
         .with_env_filter(filter)
-        .with_writer(std::io::stderr)
-        .with_target(verbose > 0)
-        .init();
+        .with_writer(std::io::stderr);
+    if live {
+        lines.init();
+    } else {
+        lines.without_time().with_target(verbose > 1).init();
+    }
 }

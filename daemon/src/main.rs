@@ -3,7 +3,12 @@
 //! | module | does |
 //! |---|---|
 //! | [`cli`] | the words of the command line |
+//! | [`input`] | labels and sound, from files or the demo |
+//! | [`pipeline`] | labels to key frames, offline: what export, curves and still share |
+//! | [`export`], [`curves`], [`labels`], [`still`], [`bench`], [`doctor`] | the commands of these names |
 //! | [`media`] | sound and video files |
+//! | [`interrupt`] | Ctrl-C, for work that ends by itself |
+//! | [`log`] | where log lines go |
 
 #![forbid(unsafe_code)]
 #![allow(
@@ -11,9 +16,18 @@
     reason = "nothing is exported from a binary; pub means: for the other modules"
 )]
 
+mod bench;
 mod cli;
+mod curves;
+mod doctor;
+mod export;
+mod input;
+mod interrupt;
+mod labels;
 mod log;
 mod media;
+mod pipeline;
+mod still;
 
 use std::process::ExitCode;
 
@@ -26,18 +40,52 @@ fn main() -> ExitCode {
         Ok(cli) => cli,
         Err(error) => return usage(&error),
     };
-    log::start(cli.verbose, matches!(cli.command, Command::Run(_)));
+    let live = matches!(cli.command, Command::Run(_) | Command::Say(_));
+    log::start(cli.verbose, live);
+    if !live {
+        interrupt::watch();
+    }
     match dispatch(&cli.command) {
         Ok(()) => ExitCode::SUCCESS,
         Err(error) => {
-            eprintln!("mouthpiece: {error:#}");
-            ExitCode::FAILURE
+            eprintln!("mouthpiece: {}", sentence(&error));
+            status(&error)
         }
     }
 }
 
+/// The exit status that users script against.
+fn status(error: &anyhow::Error) -> ExitCode {
+    if error.is::<interrupt::Interrupted>() {
+        ExitCode::from(interrupt::STATUS)
+    } else if error.is::<cli::Usage>() {
+        ExitCode::from(2)
+    } else {
+        ExitCode::FAILURE
+    }
+}
+
+/// An error with its causes, without those that it has quoted already.
+fn sentence(error: &anyhow::Error) -> String {
+    let mut text = error.to_string();
+    for cause in error.chain().skip(1).map(ToString::to_string) {
+        if !text.contains(&cause) {
+            text = format!("{text}: {cause}");
+        }
+    }
+    text
+}
+
 fn dispatch(command: &Command) -> anyhow::Result<()> {
-    anyhow::bail!("{command:?} is not in this build")
+    match command {
+        Command::Export(args) => export::run(args),
+        Command::Curves(args) => curves::run(args),
+        Command::Labels(args) => labels::run(args),
+        Command::Still(args) => still::run(args),
+        Command::Bench(args) => bench::run(args),
+        Command::Doctor(_) => doctor::run(),
+        _ => anyhow::bail!("{command:?} is not in this build"),
+    }
 }
 
 /// Help and version go to standard output with status 0; wrong usage to stderr with status 2.
@@ -48,9 +96,7 @@ fn usage(error: &clap::Error) -> ExitCode {
         return ExitCode::SUCCESS;
     }
     let text = error.to_string();
-    eprint!(
-        "mouthpiece: {}",
-        text.strip_prefix("error: ").unwrap_or(&text)
-    );
+    let text = text.strip_prefix("error: ").unwrap_or(&text);
+    eprint!("mouthpiece: {text}");
     ExitCode::from(2)
 }

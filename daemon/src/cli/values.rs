@@ -3,6 +3,8 @@
 use std::fmt;
 use std::str::FromStr;
 
+use clap::builder::{PossibleValue, PossibleValuesParser};
+
 /// Width and height in pixels.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Size {
@@ -169,6 +171,12 @@ impl FromStr for Rgb {
             .map(Self)
             .ok_or_else(|| "write it as #rrggbb, or black, white, green".into())
     }
+}
+
+/// The label formats that can be read, by name.
+pub fn label_formats() -> PossibleValuesParser {
+    let formats = mouthpiece_phonemes::READERS.iter();
+    PossibleValuesParser::new(formats.map(|r| PossibleValue::new(r.name()).help(r.about())))
 }
 
 /// Bits a second: a number, with `k` or `M` behind it.

@@ -1,0 +1,214 @@
+//! `mouthpiece bench`: speed of each stage on this machine, on the demo's sentence.
+//!
+//! Each figure is of the code that the product runs, not of a copy. Run it on a quiet machine: a
+//! figure says what one run took, without repetition or statistics.
+
+use std::hint::black_box;
+use std::sync::Arc;
+use std::time::Instant as Wall;
+
+use indicatif::ProgressBar;
+use mouthpiece_render::{FRAMES_IN_FLIGHT, Gpu, Offscreen};
+use mouthpiece_rig::{KeyFrame, STEP_TICKS, Simulation, TICK_RATE};
+use serde_json::{Map, Value, json};
+
+use crate::cli::{BenchArgs, Fps, LookArgs, Size, TierArg, ViewArg};
+use crate::export::Job;
+use crate::input::Utterance;
+use crate::media::mp4::Mp4Sink;
+use crate::media::output;
+use crate::pipeline::{Cast, Instant, Part, Performance};
+
+/// Sizes that pictures are drawn at.
+const SIZES: [Size; 2] = [
+    Size {
+        width: 640,
+        height: 480,
+    },
+    Size {
+        width: 1280,
+        height: 720,
+    },
+];
+
+/// Pictures drawn for each figure, after one that is not counted.
+const PICTURES: u32 = 12;
+
+/// Runs the command.
+pub fn run(args: &BenchArgs) -> anyhow::Result<()> {
+    let started = Wall::now();
+    let utterance = Utterance::demo()?;
+    let cast = Cast::reference()?;
+    let part = Part::new(&cast, &utterance.segments, Some(1));
+    let mut performance = Performance::new(Arc::clone(&cast.head), part.clone());
+    let mut instant = Instant::default();
+    performance.at(0, &mut instant);
+    let gpu = Gpu::headless()?;
+    let first = SIZES[0];
+    Offscreen::new(
+        &gpu,
+        &cast.head,
+        (first.width, first.height),
+        TierArg::Medium.into(),
+    )?
+    .render(&instant.frame, &look(TierArg::Medium).view())?;
+    let first_picture_ms = started.elapsed().as_secs_f64() * 1e3;
+
+    let ticks = utterance.ticks;
+    let report = json!({
+        "first_picture_ms": rounded(first_picture_ms),
+        "speech": speech(&part, ticks),
+        "simulation": simulation(&cast, &part, ticks),
+        "render": render(&cast, &gpu, &mut performance)?,
+        "export": export(utterance)?,
+        "rss_mb": peak_mb(),
+        "adapter": gpu.info().name,
+    });
+    let text = if args.json {
+        serde_json::to_string_pretty(&report)?
+    } else {
+        plain(&report)
+    };
+    output::print(&(text + "\n"))
+}
+
+/// Three significant digits: more is noise.
+fn rounded(value: f64) -> f64 {
+    let scale = 10_f64.powf(2.0 - value.abs().max(1e-9).log10().floor());
+    (value * scale).round() / scale
+}
+
+fn seconds(ticks: i64) -> f64 {
+    ticks as f64 / TICK_RATE as f64
+}
+
+fn speech(part: &Part, ticks: i64) -> Value {
+    let started = Wall::now();
+    for time in (0..ticks).step_by(STEP_TICKS as usize) {
+        black_box(part.controls_at(time));
+    }
+    json!({ "realtime_factor": rounded(seconds(ticks) / started.elapsed().as_secs_f64()) })
+}
+
+fn simulation(cast: &Cast, part: &Part, ticks: i64) -> Value {
+    let controls: Vec<_> = (0..ticks)
+        .step_by(STEP_TICKS as usize)
+        .map(|time| part.controls_at(time))
+        .collect();
+    let mut simulation = Simulation::new(Arc::clone(&cast.head));
+    let started = Wall::now();
+    for controls in &controls {
+        simulation.step(controls);
+    }
+    let wall = started.elapsed().as_secs_f64();
+    let springs = simulation.spring_count();
+    let spring_steps = (controls.len() * springs).max(1) as f64;
+    json!({
+        "realtime_factor": rounded(seconds(ticks) / wall),
+        "springs": springs,
+        "ns_per_spring_step": rounded(wall * 1e9 / spring_steps),
+    })
+}
+
+/// Time from picture to picture while pictures overlap, as in an export.
+fn render(cast: &Cast, gpu: &Gpu, performance: &mut Performance) -> anyhow::Result<Value> {
+    let mut instant = Instant::default();
+    let frames: Vec<KeyFrame> = (1..=i64::from(PICTURES) + 1)
+        .map(|k| {
+            performance.at(k * TICK_RATE / 10, &mut instant);
+            instant.frame.clone()
+        })
+        .collect();
+    let mut tiers = Map::new();
+    for tier in [TierArg::Low, TierArg::Medium, TierArg::High] {
+        let view = look(tier).view();
+        let mut sizes = Map::new();
+        for size in SIZES {
+            let mut offscreen =
+                Offscreen::new(gpu, &cast.head, (size.width, size.height), tier.into())?;
+            offscreen.render(&frames[0], &view)?;
+            let started = Wall::now();
+            for frame in &frames[1..] {
+                offscreen.submit(frame, &view)?;
+                if offscreen.in_flight() >= FRAMES_IN_FLIGHT {
+                    black_box(offscreen.take()?);
+                }
+            }
+            while black_box(offscreen.take()?).is_some() {}
+            let ms = started.elapsed().as_secs_f64() * 1e3 / f64::from(PICTURES);
+            sizes.insert(size.to_string(), json!({ "ms": rounded(ms) }));
+        }
+        tiers.insert(tier.name().into(), Value::Object(sizes));
+    }
+    Ok(Value::Object(tiers))
+}
+
+/// The whole export of the demo at its defaults, from labels to a file that is thrown away.
+fn export(utterance: Utterance) -> anyhow::Result<Value> {
+    let folder = tempfile::tempdir()?;
+    let started = Wall::now();
+    let clip_s = seconds(utterance.ticks);
+    let job = Job {
+        utterance,
+        size: SIZES[0],
+        fps: Fps { num: 30, den: 1 },
+        look: look(TierArg::Medium),
+        seed: 1,
+        bitrate: None,
+    };
+    let clip = job.clip();
+    let sink = Box::new(Mp4Sink::new(&folder.path().join("bench.mp4"), &clip)?);
+    job.export(sink, &clip, &ProgressBar::hidden())?;
+    Ok(json!({ "realtime_factor": rounded(clip_s / started.elapsed().as_secs_f64()) }))
+}
+
+fn look(tier: TierArg) -> LookArgs {
+    LookArgs {
+        tier,
+        background: None,
+        view: ViewArg::Front,
+    }
+}
+
+/// The most memory that this process has held, where the system tells.
+fn peak_mb() -> Option<f64> {
+    let status = std::fs::read_to_string("/proc/self/status").ok()?;
+    let line = status.lines().find(|line| line.starts_with("VmHWM:"))?;
+    let kb: f64 = line.split_whitespace().nth(1)?.parse().ok()?;
+    Some(rounded(kb / 1024.0))
+}
+
+/// `a.b.c  value`, a line each.
+fn plain(report: &Value) -> String {
+    fn walk(name: &str, value: &Value, lines: &mut Vec<String>) {
+        match value {
+            Value::Object(map) => map.iter().for_each(|(key, value)| {
+                let name = if name.is_empty() {
+                    key.clone()
+                } else {
+                    format!("{name}.{key}")
+                };
+                walk(&name, value, lines);
+            }),
+            Value::String(text) => lines.push(format!("{name:<32} {text}")),
+            value => lines.push(format!("{name:<32} {value}")),
+        }
+    }
+    let mut lines = Vec::new();
+    walk("", report, &mut lines);
+    lines.join("\n")
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn figures_keep_three_digits_and_plain_text_names_them_as_json_does() {
+        assert_eq!(rounded(12_345.0), 12_300.0);
+        assert_eq!(rounded(0.012_345), 0.0123);
+        let text = plain(&json!({"a": {"b": 1.5}, "c": "x"}));
+        let words: Vec<_> = text.split_whitespace().collect();
+        assert_eq!(words, ["a.b", "1.5", "c", "x"]);
+    }
+}

@@ -1,0 +1,145 @@
+//! What is to be said, from files or from the built-in demo: labels, sound and how long both last.
+
+use std::io;
+use std::path::Path;
+use std::sync::Arc;
+
+use anyhow::bail;
+use mouthpiece_phonemes::{Labels, ReadOptions, SampleRate, Segment, Warning, check};
+use mouthpiece_rig::TICK_RATE;
+
+use crate::cli::InputArgs;
+use crate::media::wav;
+
+/// The sentence of the demo: as any user's, labels at 16 kHz and a WAV.
+const DEMO_LABELS: &[u8] = include_bytes!("../../tests/fixtures/demo.PHN");
+const DEMO_SOUND: &[u8] = include_bytes!("../../tests/fixtures/demo.wav");
+
+/// Longest utterance: as long as the longest sound.
+const TICKS_MAX: i64 = wav::SECONDS_MAX as i64 * TICK_RATE;
+
+/// Something to say.
+#[derive(Clone, Debug)]
+pub struct Utterance {
+    /// Phones in order of time.
+    pub segments: Vec<Segment>,
+    /// Mono at 48 kHz, from tick 0 on.
+    pub sound: Option<Arc<[f32]>>,
+    /// How long it lasts: the longer of labels and sound.
+    pub ticks: i64,
+}
+
+impl Utterance {
+    /// Reads what `args` name, and says on stderr what is odd about it.
+    pub fn load(args: &InputArgs) -> anyhow::Result<Self> {
+        let rate = SampleRate::new(args.label_rate)?;
+        let (name, labels, sound) = match &args.labels {
+            Some(path) => {
+                let labels = read_labels(path, args.from.as_deref(), rate)?;
+                let sound = args.audio.as_deref().map(wav::read).transpose()?;
+                (path.display().to_string(), labels, sound)
+            }
+            None => {
+                let options = ReadOptions::at(SampleRate::TIMIT);
+                let labels =
+                    mouthpiece_phonemes::read_from("demo.PHN", DEMO_LABELS, None, &options)?;
+                (
+                    "demo.PHN".into(),
+                    labels,
+                    Some(wav::decode(DEMO_SOUND, "demo.wav")?),
+                )
+            }
+        };
+        Self::new(&name, labels, sound.map(|sound| sound.frames))
+    }
+
+    /// The built-in demo.
+    pub fn demo() -> anyhow::Result<Self> {
+        Self::load(&InputArgs {
+            labels: None,
+            audio: None,
+            demo: true,
+            from: None,
+            label_rate: 16_000,
+        })
+    }
+
+    fn new(name: &str, labels: Labels, sound: Option<Vec<f32>>) -> anyhow::Result<Self> {
+        if labels.segments.is_empty() {
+            bail!("{name} holds words but no phones; give the phone labels (.PHN)");
+        }
+        let sound_ticks = sound.as_ref().map(|frames| frames.len() as i64);
+        let ticks = labels.end().max(sound_ticks.unwrap_or(0));
+        if ticks > TICKS_MAX {
+            bail!(
+                "{name} goes on for {} minutes, longer than {}; cut it into parts, or check --label-rate",
+                ticks / TICK_RATE / 60,
+                wav::SECONDS_MAX / 60
+            );
+        }
+        for warning in check(&labels, sound_ticks) {
+            match warning {
+                Warning::BeyondSound { .. } => {
+                    tracing::warn!("{name}: {warning}; silence is added")
+                }
+                Warning::ShortOfSound { .. } => {
+                    tracing::warn!("{name}: {warning}; the mouth rests there")
+                }
+                _ => tracing::info!("{name}: {warning}"),
+            }
+        }
+        Ok(Self {
+            segments: labels.segments,
+            sound: sound.map(Arc::from),
+            ticks,
+        })
+    }
+}
+
+/// Reads a label file, `-` for standard input.
+pub fn read_labels(path: &Path, from: Option<&str>, rate: SampleRate) -> anyhow::Result<Labels> {
+    let options = ReadOptions::at(rate);
+    let labels = if path == Path::new("-") {
+        mouthpiece_phonemes::read_from("<stdin>", io::stdin().lock(), from, &options)
+    } else {
+        mouthpiece_phonemes::read_file(path, from, &options)
+    };
+    Ok(labels?)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use mouthpiece_phonemes::Phone;
+
+    fn labels(end: i64) -> Labels {
+        let segments = vec![Segment::new(Phone::Aa, 0, end)];
+        Labels {
+            segments,
+            words: Vec::new(),
+        }
+    }
+
+    #[test]
+    fn the_longer_of_labels_and_sound_counts() {
+        let long = Utterance::new("x", labels(100), Some(vec![0.0; 900])).unwrap();
+        assert_eq!(long.ticks, 900);
+        let long = Utterance::new("x", labels(1000), Some(vec![0.0; 900])).unwrap();
+        assert_eq!(long.ticks, 1000);
+        assert_eq!(Utterance::new("x", labels(1000), None).unwrap().ticks, 1000);
+    }
+
+    #[test]
+    fn what_cannot_be_spoken_is_refused_by_name() {
+        let error = Utterance::new("w.WRD", Labels::default(), None).unwrap_err();
+        assert!(error.to_string().contains("w.WRD"));
+        assert!(Utterance::new("x", labels(TICKS_MAX + 1), None).is_err());
+    }
+
+    #[test]
+    fn the_demo_can_be_read() {
+        let demo = Utterance::demo().unwrap();
+        assert!(demo.sound.is_some());
+        assert!((TICK_RATE..20 * TICK_RATE).contains(&demo.ticks));
+    }
+}
