@@ -255,11 +255,8 @@ fn posture(n: usize) -> [f32; VARIABLES] {
 
 fn terms(x: &[f32; VARIABLES]) -> [f32; TERMS] {
     let mut terms = [1.0; TERMS];
-    let mut next = 1;
-    for i in 0..VARIABLES {
-        terms[next] = x[i];
-        next += 1;
-    }
+    terms[1..=VARIABLES].copy_from_slice(x);
+    let mut next = 1 + VARIABLES;
     for i in 0..VARIABLES {
         for j in i..VARIABLES {
             terms[next] = x[i] * x[j];
@@ -287,8 +284,8 @@ fn least_squares(rows: &[[f32; TERMS]], values: &[f32]) -> Vec<f32> {
             }
         }
     }
-    for i in 0..TERMS {
-        a[i][i] += RIDGE;
+    for (i, row) in a.iter_mut().enumerate() {
+        row[i] += RIDGE;
     }
     for i in 0..TERMS {
         for j in 0..=i {

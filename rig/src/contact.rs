@@ -4,7 +4,7 @@
 //! compared column by column: both lips' columns were built over one another, and the muscles move
 //! them sideways together.
 
-use glam::{Affine3A, Vec3, vec3};
+use glam::{Affine3A, Vec3, Vec3A, vec3};
 
 use crate::Head;
 use crate::head::LIP_LEVELS;
@@ -13,8 +13,9 @@ use crate::head::LIP_LEVELS;
 const TOUCHING: std::ops::RangeInclusive<usize> = 1..=6;
 /// Share of an overlap that one pass removes; two passes run.
 const PASS_SHARE: f32 = 0.5;
-/// Skin keeps this far from the teeth and the eyeballs, mm.
-const CLEARANCE_MM: f32 = 0.4;
+/// Skin keeps this far from the teeth, and lids from the eyeballs, mm.
+const TEETH_CLEARANCE_MM: f32 = 0.4;
+const EYE_CLEARANCE_MM: f32 = 0.05;
 
 /// The contacts of one head, by simulated vertex numbers.
 #[derive(Clone, Debug)]
@@ -29,8 +30,8 @@ pub(crate) struct Contact {
 
 /// The skin's state that contact corrects.
 pub(crate) struct Bodies<'a> {
-    pub position: &'a mut [Vec3],
-    pub velocity: &'a mut [Vec3],
+    pub position: &'a mut [Vec3A],
+    pub velocity: &'a mut [Vec3A],
 }
 
 impl Contact {
@@ -88,8 +89,8 @@ impl Contact {
             for &i in upper[2..].iter().chain(&lower[2..]) {
                 let i = i as usize;
                 let p = skin.position[i];
-                let up = in_front(p, UPPER_EDGE_Y, 14.0, UPPER_FRONT_Z);
-                let q = unjawed.transform_point3(p);
+                let up = in_front(p.into(), UPPER_EDGE_Y, 14.0, UPPER_FRONT_Z);
+                let q = unjawed.transform_point3(p.into());
                 let low = in_front(q, LOWER_EDGE_Y - 14.0, 14.0, LOWER_FRONT_Z);
                 let push = up.max(low);
                 if push > 0.0 {
@@ -102,8 +103,8 @@ impl Contact {
 
     fn eyeballs(&self, skin: &mut Bodies<'_>) {
         for (list, side) in self.lids.iter().zip([1.0, -1.0]) {
-            let centre = self.eye_centre * vec3(side, 1.0, 1.0);
-            let least = self.eye_radius + CLEARANCE_MM;
+            let centre = Vec3A::from(self.eye_centre * vec3(side, 1.0, 1.0));
+            let least = self.eye_radius + EYE_CLEARANCE_MM;
             for &i in list {
                 let i = i as usize;
                 let out = skin.position[i] - centre;
@@ -140,7 +141,7 @@ fn in_front(p: Vec3, bottom: f32, height: f32, front: f32) -> f32 {
     // Only the front teeth: further back the cheek lies well outside the arch.
     let inside = p.x.abs() < 18.0 && (0.0..height).contains(&(p.y - bottom));
     if inside {
-        front + CLEARANCE_MM - setback(p.x) - p.z
+        front + TEETH_CLEARANCE_MM - setback(p.x) - p.z
     } else {
         0.0
     }

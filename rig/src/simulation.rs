@@ -5,7 +5,7 @@
 
 use std::sync::Arc;
 
-use glam::{Affine3A, Quat, Vec3, vec3};
+use glam::{Affine3A, Quat, Vec3, Vec3A, vec3};
 
 use crate::contact::{Bodies, Contact};
 use crate::key_frame::TICK_RATE;
@@ -36,13 +36,15 @@ pub struct Simulation {
     state: Controls,
     rate: Controls,
     /// Simulated vertices: movable ones, then the fixed rim.
-    position: Vec<Vec3>,
-    velocity: Vec<Vec3>,
-    rest: Vec<Vec3>,
-    /// Sum over a vertex's springs to bone, muscle and lid: stiffness times where they pull to.
-    pull: Vec<Vec3>,
-    /// Sum of their stiffness.
+    position: Vec<Vec3A>,
+    velocity: Vec<Vec3A>,
+    rest: Vec<Vec3A>,
+    force: Vec<Vec3A>,
+    /// Stiffness of all a vertex's springs to bone, muscle and lid, and what they pull with at rest.
     hold: Vec<f32>,
+    rest_pull: Vec<Vec3A>,
+    /// Displacement of every control point of every fibre.
+    shift: Vec<Vec3A>,
     /// All fibres' control points, displaced, and where each fibre starts among them.
     points: Vec<Vec3>,
     rest_points: Vec<Vec3>,
@@ -57,10 +59,10 @@ impl Simulation {
     #[must_use]
     pub fn new(head: Arc<Head>) -> Self {
         let tissue = Tissue::new(&head);
-        let rest: Vec<Vec3> = tissue
+        let rest: Vec<Vec3A> = tissue
             .vertices
             .iter()
-            .map(|&v| head.skin.mesh.positions[v as usize])
+            .map(|&v| head.skin.mesh.positions[v as usize].into())
             .collect();
         let mut number = vec![0; head.skin.mesh.positions.len()];
         for (new, &old) in tissue.vertices.iter().enumerate() {
@@ -82,8 +84,10 @@ impl Simulation {
             state: Controls::default(),
             rate: Controls::default(),
             position: rest.clone(),
-            velocity: vec![Vec3::ZERO; rest.len()],
-            pull: vec![Vec3::ZERO; tissue.movable],
+            velocity: vec![Vec3A::ZERO; rest.len()],
+            force: vec![Vec3A::ZERO; rest.len()],
+            rest_pull: vec![Vec3A::ZERO; tissue.movable],
+            shift: vec![Vec3A::ZERO; rest_points.len()],
             hold: vec![0.0; tissue.movable],
             points: rest_points.clone(),
             rest_points,
@@ -144,7 +148,8 @@ impl Simulation {
         self.follow(&controls.clamped());
         let mandible = self.head.mandible(self.state[Control::Jaw]);
         self.contract(&mandible);
-        self.aim(&mandible);
+        self.pull(&mandible);
+        self.stretch();
         self.integrate();
         let mut skin = Bodies {
             position: &mut self.position,
@@ -170,8 +175,8 @@ impl Simulation {
             .iter()
             .enumerate()
         {
-            frame.skin[v as usize] = self.position[i];
-            frame.velocity[v as usize] = self.velocity[i];
+            frame.skin[v as usize] = self.position[i].into();
+            frame.velocity[v as usize] = self.velocity[i].into();
         }
     }
 
@@ -190,8 +195,8 @@ impl Simulation {
             .iter()
             .enumerate()
         {
-            self.position[i] = frame.skin[v as usize];
-            self.velocity[i] = frame.velocity[v as usize];
+            self.position[i] = frame.skin[v as usize].into();
+            self.velocity[i] = frame.velocity[v as usize].into();
         }
         true
     }
@@ -229,44 +234,60 @@ impl Simulation {
             let pull = self.points[end] - carried(self.rest_points[end], share, mandible);
             self.points[self.starts[merge.fibre] + merge.point] += pull * merge.share;
         }
+        for ((shift, point), rest) in self
+            .shift
+            .iter_mut()
+            .zip(&self.points)
+            .zip(&self.rest_points)
+        {
+            *shift = (*point - *rest).into();
+        }
     }
 
-    /// Sums up where bone, muscles and lids pull each vertex to.
-    fn aim(&mut self, mandible: &Affine3A) {
-        for i in 0..self.tissue.movable {
-            self.pull[i] =
-                carried(self.rest[i], self.tissue.mandible[i], mandible) * self.tissue.bone[i];
+    /// Forces of the springs to bone, muscles and lids.
+    fn pull(&mut self, mandible: &Affine3A) {
+        for ((force, base), (position, hold)) in self
+            .force
+            .iter_mut()
+            .zip(&self.rest_pull)
+            .zip(self.position.iter().zip(&self.hold))
+        {
+            *force = *base - *position * *hold;
         }
+        // The rim takes forces of its edges but does not move.
+        self.force[self.tissue.movable..].fill(Vec3A::ZERO);
+        for &(i, stiffness) in &self.tissue.jawed {
+            let rest = self.rest[i as usize];
+            self.force[i as usize] += (mandible.transform_point3a(rest) - rest) * stiffness;
+        }
+        let scale = self.muscle_stiffness;
         for a in &self.tissue.attachments {
             let j = self.starts[a.fibre as usize] + a.point as usize;
-            let before = self.points[j] - self.rest_points[j];
-            let after = self.points[j + 1] - self.rest_points[j + 1];
-            let i = a.vertex as usize;
-            let target = self.rest[i] + before.lerp(after, a.share);
-            self.pull[i] += target * (a.stiffness * self.muscle_stiffness);
+            let shift = self.shift[j].lerp(self.shift[j + 1], a.share);
+            self.force[a.vertex as usize] += shift * (a.stiffness * scale);
         }
-        let lids = &self.head.lids;
         for &(i, k, stiffness) in &self.tissue.lids {
-            let lid = &lids[k as usize];
+            let lid = self.head.lids[k as usize];
             let (side, closed) = if lid.left {
                 (1.0, self.state[Control::LidL])
             } else {
                 (-1.0, self.state[Control::LidR])
             };
             // The upper lid follows the gaze down and up.
-            let gaze = if lid.turn < 0.0 {
-                0.55 * self.state[Control::GazePitch] * lid.hold * (1.0 - closed)
+            let follow = if lid.turn < 0.0 {
+                0.55 * lid.hold * (1.0 - closed)
             } else {
                 0.0
             };
-            let centre = self.head.eye_centre * vec3(side, 1.0, 1.0);
+            let gaze = follow * self.state[Control::GazePitch];
             let turn = Quat::from_rotation_x(-(lid.turn * closed * LID_OVERSHOOT + gaze));
-            let target = centre + turn * (self.rest[i as usize] - centre);
-            self.pull[i as usize] += target * stiffness;
+            let out =
+                self.rest[i as usize] - Vec3A::from(self.head.eye_centre * vec3(side, 1.0, 1.0));
+            self.force[i as usize] += (turn.mul_vec3a(out) - out) * stiffness;
         }
     }
 
-    /// The stiffness that goes with [`Self::aim`]; it does not depend on controls.
+    /// What of [`Self::pull`] does not depend on controls.
     fn sum_holds(&mut self) {
         self.hold.copy_from_slice(&self.tissue.bone);
         for a in &self.tissue.attachments {
@@ -275,25 +296,55 @@ impl Simulation {
         for &(i, _, stiffness) in &self.tissue.lids {
             self.hold[i as usize] += stiffness;
         }
+        for ((base, rest), hold) in self.rest_pull.iter_mut().zip(&self.rest).zip(&self.hold) {
+            *base = *rest * *hold;
+        }
     }
 
-    /// Forces, then velocities at the half step, then positions.
+    /// Forces of the skin's own springs. Eight at a time: ends are gathered and forces scattered one
+    /// by one, but root and division run in wide registers.
+    fn stretch(&mut self) {
+        const LANES: usize = 8;
+        let stiffness = self.tissue.edge_stiffness;
+        let blocks = self.tissue.edges.chunks_exact(LANES);
+        for edge in blocks.remainder() {
+            let [a, b] = edge.ends.map(|i| i as usize);
+            let d = self.position[b] - self.position[a];
+            let pull = d * (stiffness * (1.0 - edge.rest_mm / d.length().max(1e-4)));
+            self.force[a] += pull;
+            self.force[b] -= pull;
+        }
+        for block in blocks {
+            let mut d = [Vec3A::ZERO; LANES];
+            let mut gain = [0.0_f32; LANES];
+            for lane in 0..LANES {
+                let [a, b] = block[lane].ends.map(|i| i as usize);
+                d[lane] = self.position[b] - self.position[a];
+                gain[lane] = d[lane].length_squared();
+            }
+            for lane in 0..LANES {
+                gain[lane] = stiffness * (1.0 - block[lane].rest_mm / gain[lane].max(1e-8).sqrt());
+            }
+            for lane in 0..LANES {
+                let [a, b] = block[lane].ends.map(|i| i as usize);
+                let pull = d[lane] * gain[lane];
+                self.force[a] += pull;
+                self.force[b] -= pull;
+            }
+        }
+    }
+
+    /// Leapfrog: velocities at the half step, then positions; the rim stays.
     fn integrate(&mut self) {
         let damp = (-DAMPING * STEP_S).exp();
-        let stiffness = self.tissue.edge_stiffness;
-        for i in 0..self.tissue.movable {
-            let p = self.position[i];
-            let mut force = self.pull[i] - p * self.hold[i];
-            let range = self.tissue.starts[i] as usize..self.tissue.starts[i + 1] as usize;
-            for edge in &self.tissue.edges[range] {
-                let d = self.position[edge.other as usize] - p;
-                let length = d.length_squared().max(1e-8).sqrt();
-                force += d * (stiffness * (1.0 - edge.rest_mm / length));
-            }
-            self.velocity[i] = (self.velocity[i] + force * STEP_S) * damp;
-        }
-        for i in 0..self.tissue.movable {
-            self.position[i] += self.velocity[i] * STEP_S;
+        let movable = self.tissue.movable;
+        for ((velocity, position), force) in self.velocity[..movable]
+            .iter_mut()
+            .zip(&mut self.position[..movable])
+            .zip(&self.force)
+        {
+            *velocity = (*velocity + *force * STEP_S) * damp;
+            *position += *velocity * STEP_S;
         }
     }
 }

@@ -37,10 +37,10 @@ pub(crate) struct Attachment {
     pub stiffness: f32,
 }
 
-/// A spring along an edge, seen from one of its ends.
+/// A spring along an edge of the skin; at least its first end moves.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct HalfEdge {
-    pub other: u32,
+pub(crate) struct Edge {
+    pub ends: [u32; 2],
     pub rest_mm: f32,
 }
 
@@ -52,12 +52,11 @@ pub(crate) struct Tissue {
     pub vertices: Vec<u32>,
     /// How many of them move; the rest is the fixed rim that edges end at.
     pub movable: usize,
-    /// Start of each movable vertex's half edges in `edges`, and the end of the last.
-    pub starts: Vec<u32>,
-    pub edges: Vec<HalfEdge>,
-    /// Per movable vertex: stiffness to the bone and the mandible's share of that bone.
+    pub edges: Vec<Edge>,
+    /// Per movable vertex: stiffness to the bone, skull and mandible together.
     pub bone: Vec<f32>,
-    pub mandible: Vec<f32>,
+    /// Vertices that the mandible takes along, with its share of that stiffness.
+    pub jawed: Vec<(u32, f32)>,
     pub attachments: Vec<Attachment>,
     /// `(simulated vertex, index into Head::lids, stiffness)`.
     pub lids: Vec<(u32, u32, f32)>,
@@ -98,7 +97,7 @@ impl Tissue {
         for (new, &old) in vertices.iter().enumerate() {
             number[old as usize] = new as u32;
         }
-        let (mut starts, mut edges) = (vec![0], Vec::new());
+        let mut edges = Vec::new();
         for i in 0..movable {
             let old = vertices[i];
             for &other in &neighbours[old as usize] {
@@ -106,12 +105,15 @@ impl Tissue {
                     number[other as usize] = vertices.len() as u32;
                     vertices.push(other);
                 }
-                edges.push(HalfEdge {
-                    other: number[other as usize],
-                    rest_mm: rest[old as usize].distance(rest[other as usize]),
-                });
+                let j = number[other as usize];
+                if j > i as u32 {
+                    let rest_mm = rest[old as usize].distance(rest[other as usize]);
+                    edges.push(Edge {
+                        ends: [i as u32, j],
+                        rest_mm,
+                    });
+                }
             }
-            starts.push(edges.len() as u32);
         }
 
         let sides = sides(head);
@@ -132,16 +134,23 @@ impl Tissue {
                 )
             })
             .collect();
+        let bone: Vec<f32> = (0..movable)
+            .map(|i| bone_stiffness(at(i), sides[vertices[i] as usize]))
+            .collect();
+        let jawed = (0..movable)
+            .map(|i| {
+                (
+                    i as u32,
+                    bone[i] * mandible_share(at(i), sides[vertices[i] as usize]),
+                )
+            })
+            .filter(|(_, stiffness)| *stiffness > 0.0)
+            .collect();
         Self {
-            bone: (0..movable)
-                .map(|i| bone_stiffness(at(i), sides[vertices[i] as usize]))
-                .collect(),
-            mandible: (0..movable)
-                .map(|i| mandible_share(at(i), sides[vertices[i] as usize]))
-                .collect(),
+            bone,
+            jawed,
             vertices,
             movable,
-            starts,
             edges,
             attachments,
             lids,
@@ -149,9 +158,9 @@ impl Tissue {
         }
     }
 
-    /// Springs of all kinds; an edge counts once.
+    /// Springs of all kinds.
     pub(crate) fn spring_count(&self) -> usize {
-        self.edges.len() / 2 + self.movable + self.attachments.len() + self.lids.len()
+        self.edges.len() + self.movable + self.attachments.len() + self.lids.len()
     }
 }
 

@@ -12,6 +12,7 @@ use mouthpiece_rig::TICK_RATE;
 use mouthpiece_speech::{Speech, Track};
 use tokio::sync::mpsc;
 
+use std::thread::Thread;
 use std::time::Duration;
 
 use super::sound::Output;
@@ -72,6 +73,8 @@ pub struct Conductor {
     output: Output,
     commands: mpsc::Receiver<Command>,
     cues: crossbeam::channel::Sender<Cue>,
+    /// The thread that takes the cues: it naps while it is far enough ahead.
+    face: Option<Thread>,
     speech: Speech,
     /// In the order of their `begin`; those that speak have a start.
     utterances: Vec<Utterance>,
@@ -84,12 +87,14 @@ impl Conductor {
         output: Output,
         commands: mpsc::Receiver<Command>,
         cues: crossbeam::channel::Sender<Cue>,
+        face: Option<Thread>,
         speech: Speech,
     ) -> Self {
         Self {
             output,
             commands,
             cues,
+            face,
             speech,
             utterances: Vec::new(),
             block: vec![0.0; super::sound::BLOCK_TICKS],
@@ -295,6 +300,9 @@ impl Conductor {
     /// without that thread there is nothing to go on for.
     fn cue(&mut self, cue: Cue) {
         self.quit |= self.cues.send(cue).is_err();
+        if let Some(face) = &self.face {
+            face.unpark();
+        }
     }
 }
 

@@ -57,7 +57,8 @@ impl Body for Simulation {
         self.save(frame);
     }
     fn restore(&mut self, frame: &KeyFrame) {
-        self.restore(frame);
+        // Refused only for another head's frames, and there is one head.
+        let _ = self.restore(frame);
     }
     fn set_epoch(&mut self, epoch: u32) {
         self.set_epoch(epoch);

@@ -1,9 +1,36 @@
-//! The live face.
+//! The live face: `run`, `say`, and the threads between a client's bytes and what is heard and seen.
+//!
+//! | thread | module | does |
+//! |---|---|---|
+//! | main | [`window`] | draws the head as it is at the audible instant of the picture |
+//! | `simulation` | [`face`], [`score`] | moves the head, a bounded lead ahead (HABER 5.3) |
+//! | `sound` | [`conductor`], [`utterance`], [`sound`] | utterances in turn, mixed into the device's ring |
+//! | the device's own | `sound::callback` | takes from the ring, stamps the clock |
+//! | `net` | [`server`], [`connection`] | sockets; nothing real-time |
+//!
+//! Between them: [`clock`] (which tick is heard now), [`frames`] (key frames, with epochs), bounded
+//! channels for commands, cues and answers. [`player`] puts them together. [`speaker`] is what `say`
+//! does without a daemon, [`client`] what it does with one; both take their utterance from [`source`].
+//! [`sync`] is a test of sound against picture, judged from outside. All time is [`time`]'s.
+
+mod address;
+mod client;
 mod clock;
+mod commands;
 mod conductor;
+mod connection;
 mod face;
 mod frames;
+mod player;
 mod score;
+mod server;
 mod sound;
+mod source;
+mod speaker;
+mod stop;
+mod sync;
 mod time;
 mod utterance;
+mod window;
+
+pub use commands::{run, say, sync_test};

@@ -73,7 +73,7 @@ impl Head {
             tongue_root: vec3(0.0, -46.0, 45.0),
             tongue_blade: vec3(0.0, -36.0, 80.0),
         };
-        head.fibres = crate::muscle::fibres(|x, y| surface.from_front(x, y))
+        head.fibres = crate::muscle::fibres(|x, y| surface.seen_from_front(x, y))
             .map_err(ReferenceError::Muscles)?;
         crate::occlusion::bake(&mut head);
         Ok(head)

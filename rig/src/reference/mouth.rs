@@ -56,7 +56,7 @@ pub(super) fn lip(surface: &Surface, sign: f32) -> Vec<Column> {
             let closing = meeting - contact(own, x);
             let corner = i == STATIONS - 1;
             let border = if corner {
-                surface.from_front(CHEILION_X, -35.2)
+                surface.seen_from_front(CHEILION_X, -35.2)
             } else {
                 at_x(vermilion, x * 1.03)
             };

@@ -151,8 +151,8 @@ fn line_mouth(half: &mut Half, upper: &mut LipRows, lower: &mut LipRows, surface
     let last = mouth::STATIONS - 1;
     for (rows, sign) in [(&mut *upper, 1.0), (&mut *lower, -1.0)] {
         for (station, column) in mouth::lip(surface, sign).iter().enumerate() {
-            for level in 4..LIP_LEVELS {
-                rows[station][level] = if sign < 0.0 && station == last {
+            for (level, number) in rows[station].iter_mut().enumerate().skip(4) {
+                *number = if sign < 0.0 && station == last {
                     usize::MAX
                 } else {
                     half.push(column.points[level], column.chart[3], 1.0, 1.0)

@@ -92,7 +92,7 @@ impl Surface {
     }
 
     /// The skin straight behind a point of the face seen from the front: x and y are kept.
-    pub(super) fn from_front(&self, x: f32, y: f32) -> Vec3 {
+    pub(super) fn seen_from_front(&self, x: f32, y: f32) -> Vec3 {
         let mut angle = (x / 100.0).clamp(-1.5, 1.5);
         for _ in 0..20 {
             let radius = self.radius(angle, y);

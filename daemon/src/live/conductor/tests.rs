@@ -37,7 +37,7 @@ fn stage() -> Stage {
     .unwrap();
     let now_ns = origin.now_ns();
     Stage {
-        conductor: Conductor::new(output, inbox, cue, speech),
+        conductor: Conductor::new(output, inbox, cue, None, speech),
         commands,
         cues,
         answers: mpsc::channel(ANSWERS_MAX),

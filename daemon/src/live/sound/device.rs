@@ -47,23 +47,35 @@ pub(super) fn open(
     let told = |e: cpal::Error| format!("{name}: {e}");
     let (format, config) = choose(&device).map_err(told)?;
     let rate = config.sample_rate;
-    let (ring, out) = rtrb::RingBuffer::new(usize::try_from(rate * RING_S).unwrap_or(48_000));
     let link = Arc::new(Link::default());
-    let callback = Callback::new(
-        out,
-        Arc::clone(&link),
-        Arc::clone(cell),
-        base,
-        rate,
-        usize::from(config.channels),
-    );
-    let stream = match format {
-        SampleFormat::F32 => build::<f32>(&device, config, callback, origin),
-        SampleFormat::I16 => build::<i16>(&device, config, callback, origin),
-        SampleFormat::I32 => build::<i32>(&device, config, callback, origin),
-        other => return Err(format!("{name} takes only {other} samples")),
+    // A wish for a buffer is refused by some devices; their own choice then serves.
+    let mut opened = Err(String::new());
+    for buffer_size in [config.buffer_size, BufferSize::Default] {
+        let config = StreamConfig {
+            buffer_size,
+            ..config
+        };
+        let (ring, out) = rtrb::RingBuffer::new(usize::try_from(rate * RING_S).unwrap_or(48_000));
+        let callback = Callback::new(
+            out,
+            Arc::clone(&link),
+            Arc::clone(cell),
+            base,
+            rate,
+            usize::from(config.channels),
+        );
+        let stream = match format {
+            SampleFormat::F32 => build::<f32>(&device, config, callback, origin),
+            SampleFormat::I16 => build::<i16>(&device, config, callback, origin),
+            SampleFormat::I32 => build::<i32>(&device, config, callback, origin),
+            other => return Err(format!("{name} takes only {other} samples")),
+        };
+        opened = stream.map_err(told).map(|stream| (stream, ring));
+        if opened.is_ok() {
+            break;
+        }
     }
-    .map_err(told)?;
+    let (stream, ring) = opened?;
     let period = stream.buffer_size().map_err(told)?;
     stream.play().map_err(told)?;
     tracing::info!(

@@ -1,0 +1,161 @@
+//! The live machine put together: sound and simulation threads, and the ends that others hold.
+
+use std::sync::Arc;
+use std::sync::atomic::{AtomicU64, Ordering};
+use std::thread::JoinHandle;
+
+use anyhow::{Context as _, Result};
+use mouthpiece_phonemes::Segment;
+use mouthpiece_protocol::ErrorCode;
+use mouthpiece_rig::{Simulation, TICK_RATE};
+use mouthpiece_speech::Idle;
+use tokio::sync::mpsc;
+
+use super::clock::{AudibleClock, ClockCell};
+use super::conductor::{COMMANDS_MAX, CUES_MAX, Command, Conductor};
+use super::face::Face;
+use super::frames::{FrameReader, key_frames};
+use super::score::Score;
+use super::sound::{Choice, Output};
+use super::time::{Origin, drive};
+use super::utterance::Begin;
+use crate::pipeline::Cast;
+
+/// The head is settled by this much motion before anything is shown.
+const PRE_ROLL_TICKS: i64 = TICK_RATE;
+
+/// The running threads. Dropped last; [`Player::end`] waits for them.
+pub struct Player {
+    handle: Handle,
+    threads: Vec<JoinHandle<()>>,
+}
+
+/// What the window needs.
+pub struct Sight {
+    /// Key frames.
+    pub frames: FrameReader,
+    /// What is heard.
+    pub clock: AudibleClock,
+    /// Process time.
+    pub origin: Origin,
+}
+
+/// Sends utterances to the sound thread. Clones reach the same one.
+#[derive(Clone, Debug)]
+pub struct Handle {
+    commands: mpsc::Sender<Command>,
+    keys: Arc<AtomicU64>,
+}
+
+impl Player {
+    /// Starts both threads. `seed` is the idle life's.
+    pub fn start(cast: &Cast, choice: Choice, seed: u64) -> Result<(Self, Sight)> {
+        let origin = Origin::new();
+        let cell = Arc::new(ClockCell::default());
+        let (commands, inbox) = mpsc::channel(COMMANDS_MAX);
+        let (cue, cues) = crossbeam::channel::bounded(CUES_MAX);
+        let (writer, frames) = key_frames();
+
+        let score = Score::new(&cast.speech, Idle::new(seed));
+        let clock = AudibleClock::new(Arc::clone(&cell));
+        let mut body = Simulation::new(Arc::clone(&cast.head));
+        let simulation = spawn("simulation", move || {
+            body.set_time(-PRE_ROLL_TICKS);
+            while body.time() < 0 {
+                let controls = score.controls_at(body.time());
+                body.step(&controls);
+            }
+            let mut face = Face::new(body, score, clock, cues, writer);
+            drive(|| face.step(origin.now_ns()));
+        })?;
+
+        let face = simulation.thread().clone();
+        let speech = cast.speech.clone();
+        let sound_cell = Arc::clone(&cell);
+        let sound = spawn("sound", move || {
+            let output = Output::open(choice, sound_cell, origin);
+            let mut conductor = Conductor::new(output, inbox, cue, Some(face), speech);
+            drive(|| conductor.step(origin.now_ns()));
+        })?;
+
+        let player = Self {
+            handle: Handle {
+                commands,
+                keys: Arc::default(),
+            },
+            threads: vec![sound, simulation],
+        };
+        let sight = Sight {
+            frames,
+            clock: AudibleClock::new(cell),
+            origin,
+        };
+        Ok((player, sight))
+    }
+
+    pub fn handle(&self) -> Handle {
+        self.handle.clone()
+    }
+
+    /// Ends the threads and waits for them; an error when one had died.
+    pub fn end(self) -> Result<()> {
+        // Full only while the sound thread is behind; it ends as well when all handles are gone.
+        let _ = self.handle.commands.try_send(Command::Quit);
+        drop(self.handle);
+        for thread in self.threads {
+            let name = thread.thread().name().unwrap_or("a").to_owned();
+            thread.thread().unpark();
+            anyhow::ensure!(
+                thread.join().is_ok(),
+                "the {name} thread broke down; the lines above say where"
+            );
+        }
+        Ok(())
+    }
+}
+
+impl Handle {
+    /// A number that no other utterance has.
+    pub fn new_key(&self) -> u64 {
+        self.keys.fetch_add(1, Ordering::Relaxed)
+    }
+
+    pub async fn begin(&self, begin: Begin) {
+        self.send(Command::Begin(begin)).await;
+    }
+
+    pub async fn segments(&self, key: u64, segments: Vec<Segment>) {
+        self.send(Command::Segments(key, segments)).await;
+    }
+
+    /// Sound at 48 kHz, one channel.
+    pub async fn sound(&self, key: u64, mono: Vec<f32>) {
+        self.send(Command::Sound(key, mono)).await;
+    }
+
+    pub async fn end(&self, key: u64) {
+        self.send(Command::End(key)).await;
+    }
+
+    pub async fn fail(&self, key: u64, code: ErrorCode, message: String) {
+        self.send(Command::Fail(key, code, message)).await;
+    }
+
+    /// Stops one utterance, or everything.
+    pub async fn stop(&self, key: Option<u64>) {
+        self.send(Command::Stop(key)).await;
+    }
+
+    /// Waits while the sound thread has enough to do. Without that thread there is nobody to tell:
+    /// the process is ending.
+    async fn send(&self, command: Command) {
+        let _ = self.commands.send(command).await;
+    }
+}
+
+fn spawn(name: &str, work: impl FnOnce() + Send + 'static) -> Result<JoinHandle<()>> {
+    std::thread::Builder::new()
+        .name(name.to_owned())
+        .spawn(work)
+        .with_context(|| format!("no thread for {name}; allow this process more of them"))
+}
