@@ -40,6 +40,8 @@ pub enum Command {
     Still(StillArgs),
     Bench(BenchArgs),
     Doctor(DoctorArgs),
+    #[command(hide = true)]
+    SyncTest(SyncTestArgs),
 }
 
 /// The daemon: a window, sound and a socket; the face idles alive until something speaks
@@ -254,6 +256,17 @@ pub struct BenchArgs {
 #[derive(Debug, Args)]
 #[command(after_help = "Example:\n  mouthpiece doctor")]
 pub struct DoctorArgs {}
+
+/// Clicks with flashes, for recorders of sound and screen to compare (tests/live_sync.py)
+#[derive(Debug, Args)]
+#[command(after_help = "Example:\n  mouthpiece sync-test 60")]
+pub struct SyncTestArgs {
+    /// How long
+    #[arg(value_parser = clap::value_parser!(u32).range(1..=3600))]
+    pub seconds: u32,
+    #[command(flatten)]
+    pub stage: StageArgs,
+}
 
 /// Quality of the picture.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]

@@ -6,6 +6,7 @@
 //! | [`input`] | labels and sound, from files or the demo |
 //! | [`pipeline`] | labels to key frames, offline: what export, curves and still share |
 //! | [`export`], [`curves`], [`labels`], [`still`], [`bench`], [`doctor`] | the commands of these names |
+//! | [`live`] | `run` and `say`: window, sound, sockets and the clock |
 //! | [`media`] | sound and video files |
 //! | [`interrupt`] | Ctrl-C, for work that ends by itself |
 //! | [`log`] | where log lines go |
@@ -24,6 +25,7 @@ mod export;
 mod input;
 mod interrupt;
 mod labels;
+mod live;
 mod log;
 mod media;
 mod pipeline;
@@ -40,7 +42,10 @@ fn main() -> ExitCode {
         Ok(cli) => cli,
         Err(error) => return usage(&error),
     };
-    let live = matches!(cli.command, Command::Run(_) | Command::Say(_));
+    let live = matches!(
+        cli.command,
+        Command::Run(_) | Command::Say(_) | Command::SyncTest(_)
+    );
     log::start(cli.verbose, live);
     if !live {
         interrupt::watch();
@@ -84,7 +89,9 @@ fn dispatch(command: &Command) -> anyhow::Result<()> {
         Command::Still(args) => still::run(args),
         Command::Bench(args) => bench::run(args),
         Command::Doctor(_) => doctor::run(),
-        _ => anyhow::bail!("{command:?} is not in this build"),
+        Command::Run(args) => live::run(args),
+        Command::Say(args) => live::say(args),
+        Command::SyncTest(args) => live::sync_test(&args.stage, args.seconds),
     }
 }
 

@@ -39,7 +39,9 @@ impl Address {
                 beyond.port()
             );
         }
-        let first = all.first().with_context(|| format!("`{text}` names no address"))?;
+        let first = all
+            .first()
+            .with_context(|| format!("`{text}` names no address"))?;
         Ok(Self::Loopback(*first))
     }
 
@@ -47,7 +49,9 @@ impl Address {
     pub fn user_default() -> Result<Self> {
         match std::env::var_os("XDG_RUNTIME_DIR").filter(|d| !d.is_empty()) {
             Some(folder) => Self::unix(&Path::new(&folder).join(SOCKET_NAME)),
-            None => bail!("XDG_RUNTIME_DIR is not set; say where to listen with --listen unix:PATH"),
+            None => {
+                bail!("XDG_RUNTIME_DIR is not set; say where to listen with --listen unix:PATH")
+            }
         }
     }
 
@@ -82,10 +86,16 @@ mod tests {
     fn addresses_are_read_as_the_help_says() {
         let unix = |p: &str| Address::Unix(PathBuf::from(p));
         assert_eq!(Address::parse("unix:face.sock").unwrap(), unix("face.sock"));
-        assert_eq!(Address::parse("/run/face.sock").unwrap(), unix("/run/face.sock"));
+        assert_eq!(
+            Address::parse("/run/face.sock").unwrap(),
+            unix("/run/face.sock")
+        );
         let port = Address::parse("127.0.0.1:7716").unwrap();
         assert_eq!(port.to_string(), "127.0.0.1:7716");
-        assert!(matches!(Address::parse("[::1]:80"), Ok(Address::Loopback(_))));
+        assert!(matches!(
+            Address::parse("[::1]:80"),
+            Ok(Address::Loopback(_))
+        ));
     }
 
     #[test]

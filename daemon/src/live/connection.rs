@@ -27,8 +27,8 @@ const RATE_HZ: u32 = 48_000;
 
 /// Both halves of a client's connection.
 pub type Stream = (
-    Box<dyn AsyncRead + Send + Unpin>,
-    Box<dyn AsyncWrite + Send + Unpin>,
+    Box<dyn AsyncRead + Send + Sync + Unpin>,
+    Box<dyn AsyncWrite + Send + Sync + Unpin>,
 );
 
 /// Serves a client until it is gone and all it began has ended.
@@ -74,7 +74,7 @@ struct Client {
     session: Session,
     handle: Handle,
     answers: mpsc::Sender<DaemonMessage>,
-    write: Box<dyn AsyncWrite + Send + Unpin>,
+    write: Box<dyn AsyncWrite + Send + Sync + Unpin>,
     /// The player's numbers of utterances that have not ended, by the client's ids.
     keys: HashMap<String, u64>,
     /// Resamplers of those whose sound is being sent.

@@ -33,4 +33,9 @@ mod time;
 mod utterance;
 mod window;
 
+/// With this, allocating in the device's callback ends the process at once.
+#[cfg(feature = "alloc-check")]
+#[global_allocator]
+static ALLOCATOR: assert_no_alloc::AllocDisabler = assert_no_alloc::AllocDisabler;
+
 pub use commands::{run, say, sync_test};

@@ -28,6 +28,7 @@ const PRE_ROLL_TICKS: i64 = TICK_RATE;
 pub struct Player {
     handle: Handle,
     threads: Vec<JoinHandle<()>>,
+    has_sound: bool,
 }
 
 /// What the window needs.
@@ -72,8 +73,11 @@ impl Player {
         let face = simulation.thread().clone();
         let speech = cast.speech.clone();
         let sound_cell = Arc::clone(&cell);
+        let (opened, has_sound) = std::sync::mpsc::sync_channel(1);
         let sound = spawn("sound", move || {
             let output = Output::open(choice, sound_cell, origin);
+            // Nobody waits for it only when the start itself failed.
+            let _ = opened.send(output.has_device());
             let mut conductor = Conductor::new(output, inbox, cue, Some(face), speech);
             drive(|| conductor.step(origin.now_ns()));
         })?;
@@ -84,6 +88,7 @@ impl Player {
                 keys: Arc::default(),
             },
             threads: vec![sound, simulation],
+            has_sound: has_sound.recv().unwrap_or(false),
         };
         let sight = Sight {
             frames,
@@ -95,6 +100,11 @@ impl Player {
 
     pub fn handle(&self) -> Handle {
         self.handle.clone()
+    }
+
+    /// Whether there was a sound device at the start.
+    pub fn has_sound(&self) -> bool {
+        self.has_sound
     }
 
     /// Ends the threads and waits for them; an error when one had died.

@@ -45,11 +45,11 @@ impl Server {
     pub async fn bind(address: &Address) -> Result<Self> {
         let listener = match address {
             Address::Unix(path) => Listener::Unix(bind_unix(path).await?, SocketFile(path.clone())),
-            Address::Loopback(socket) => Listener::Tcp(
-                TcpListener::bind(socket)
-                    .await
-                    .with_context(|| format!("cannot listen at {socket}; give --listen another port"))?,
-            ),
+            Address::Loopback(socket) => {
+                Listener::Tcp(TcpListener::bind(socket).await.with_context(|| {
+                    format!("cannot listen at {socket}; give --listen another port")
+                })?)
+            }
         };
         let limits = Limits {
             // Any user of this machine can connect to a port, but not read this user's files.
@@ -115,9 +115,9 @@ async fn turn_away((_, mut write): Stream) {
 async fn bind_unix(path: &Path) -> Result<UnixListener> {
     let name = path.display();
     match tokio::net::UnixStream::connect(path).await {
-        Ok(_) => bail!(
-            "another mouthpiece listens at {name}; end it, or give --listen another place"
-        ),
+        Ok(_) => {
+            bail!("another mouthpiece listens at {name}; end it, or give --listen another place")
+        }
         Err(error) if error.kind() == ErrorKind::NotFound => {}
         Err(error) => match std::fs::symlink_metadata(path) {
             Ok(there) if there.file_type().is_socket() => {
@@ -138,7 +138,9 @@ async fn bind_unix(path: &Path) -> Result<UnixListener> {
             std::fs::rename(&fresh, path)?;
             Ok(listener)
         })
-        .with_context(|| format!("cannot listen at {name}; does its folder exist, and is it yours?"));
+        .with_context(|| {
+            format!("cannot listen at {name}; does its folder exist, and is it yours?")
+        });
     if bound.is_err() {
         let _ = std::fs::remove_file(&fresh);
     }

@@ -40,7 +40,9 @@ impl Source {
         if args.labels.as_deref() == Some(Path::new("-")) && timit {
             let rate = SampleRate::new(args.label_rate)?;
             let sound = args.audio.as_deref().map(wav::read).transpose()?;
-            return Self::start(sound.map(|s| s.frames), move |send| stdin_labels(rate, send));
+            return Self::start(sound.map(|s| s.frames), move |send| {
+                stdin_labels(rate, send)
+            });
         }
         let Utterance {
             segments, sound, ..
@@ -69,7 +71,10 @@ impl Source {
         if let Some(sound) = sound {
             spawn("audio", move || {
                 for piece in sound.chunks(PIECE_SAMPLES) {
-                    if sound_send.blocking_send(Piece::Sound(piece.to_vec())).is_err() {
+                    if sound_send
+                        .blocking_send(Piece::Sound(piece.to_vec()))
+                        .is_err()
+                    {
                         return;
                     }
                 }

@@ -16,7 +16,11 @@ use super::utterance::{ANSWERS_MAX, Begin};
 const REST: Duration = Duration::from_millis(600);
 
 /// Speaks `source` and waits until it was heard. `start` learns its first tick.
-pub async fn speak(handle: Handle, mut source: Source, start: Option<Arc<AtomicI64>>) -> Result<()> {
+pub async fn speak(
+    handle: Handle,
+    mut source: Source,
+    start: Option<Arc<AtomicI64>>,
+) -> Result<()> {
     let (answers, mut told) = mpsc::channel(ANSWERS_MAX);
     let key = handle.new_key();
     let begin = Begin {

@@ -88,8 +88,14 @@ mod tests {
 
     #[test]
     fn frames_of_any_device_rate_become_ticks() {
-        assert_eq!(ticks_from_frames(44_100 * 7 + 441, 44_100), 48_000 * 7 + 480);
+        assert_eq!(
+            ticks_from_frames(44_100 * 7 + 441, 44_100),
+            48_000 * 7 + 480
+        );
         assert_eq!(ticks_from_frames(-44_100, 44_100), -48_000);
-        assert_eq!(ticks_from_frames(i64::MAX / 48_000, 48_000), i64::MAX / 48_000);
+        assert_eq!(
+            ticks_from_frames(i64::MAX / 48_000, 48_000),
+            i64::MAX / 48_000
+        );
     }
 }

@@ -16,10 +16,7 @@ struct Stage {
     conductor: Conductor,
     commands: mpsc::Sender<Command>,
     cues: crossbeam::channel::Receiver<Cue>,
-    answers: (
-        mpsc::Sender<DaemonMessage>,
-        mpsc::Receiver<DaemonMessage>,
-    ),
+    answers: (mpsc::Sender<DaemonMessage>, mpsc::Receiver<DaemonMessage>),
     start_ns: i64,
     now_ns: i64,
 }
@@ -65,10 +62,7 @@ impl Stage {
     fn pass_ms(&mut self, ms: i64) {
         for _ in 0..ms / 10 {
             self.now_ns += 10_000_000;
-            assert!(matches!(
-                self.conductor.step(self.now_ns),
-                Flow::Wait(_)
-            ));
+            assert!(matches!(self.conductor.step(self.now_ns), Flow::Wait(_)));
         }
     }
 
@@ -128,7 +122,11 @@ fn utterances_follow_one_another_to_the_tick() {
     stage.pass_ms(1300);
     assert_eq!(
         stage.told(),
-        ["finished u1 0.60 -0.00", "started u2", "finished u2 0.60 -0.00"]
+        [
+            "finished u1 0.60 -0.00",
+            "started u2",
+            "finished u2 0.60 -0.00"
+        ]
     );
     let starts = stage.starts();
     assert_eq!(starts[1].1 - starts[0].1, 48 * 600 + 7, "{starts:?}");
@@ -214,7 +212,12 @@ fn one_that_was_next_in_line_is_not_lost_with_the_stopped_one() {
     stage.pass_ms(700);
     assert_eq!(
         stage.told(),
-        ["started u1", "stopped u1 0.3", "started u2", "finished u2 0.40 -0.00"]
+        [
+            "started u1",
+            "stopped u1 0.3",
+            "started u2",
+            "finished u2 0.40 -0.00"
+        ]
     );
     assert_eq!(stage.starts()[0].0, 2, "begins again");
 }
@@ -243,5 +246,8 @@ fn time_goes_on_while_nobody_speaks() {
     let mut stage = stage();
     stage.pass_ms(2000);
     let written = stage.conductor.output.written();
-    assert!((95_000..=96_000 + 48 * 90 + 480).contains(&written), "{written}");
+    assert!(
+        (95_000..=96_000 + 48 * 90 + 480).contains(&written),
+        "{written}"
+    );
 }

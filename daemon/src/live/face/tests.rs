@@ -168,7 +168,10 @@ fn labels_that_come_in_pieces_give_what_they_give_at_once() {
             stage.settle((1010 + 10 * n as i64) * MS);
         }
         let segments = vec![segment];
-        pieces.cues.send(Cue::Segments { key: 1, segments }).unwrap();
+        pieces
+            .cues
+            .send(Cue::Segments { key: 1, segments })
+            .unwrap();
     }
     for ms in 1050..2500 {
         for stage in [&mut whole, &mut pieces] {

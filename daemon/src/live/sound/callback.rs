@@ -124,7 +124,10 @@ mod tests {
         callback.fill(&mut out, 77, |x| x);
         assert_eq!(out, [0.5; 400]);
         let (_, stamp) = callback.cell.read().unwrap();
-        assert_eq!((stamp.first, stamp.end, stamp.playback_ns), (1000, 1400, 77));
+        assert_eq!(
+            (stamp.first, stamp.end, stamp.playback_ns),
+            (1000, 1400, 77)
+        );
     }
 
     #[test]

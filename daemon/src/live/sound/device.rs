@@ -43,7 +43,9 @@ pub(super) fn open(
     base: i64,
 ) -> Result<Device, String> {
     let device = find(wanted)?;
-    let name = device.id().map_or_else(|e| e.to_string(), |id| id.to_string());
+    let name = device
+        .id()
+        .map_or_else(|e| e.to_string(), |id| id.to_string());
     let told = |e: cpal::Error| format!("{name}: {e}");
     let (format, config) = choose(&device).map_err(told)?;
     let rate = config.sample_rate;
@@ -117,12 +119,7 @@ fn choose(device: &cpal::Device) -> Result<(SampleFormat, StreamConfig), cpal::E
             _ => 100,
         };
         let rate = range.min_sample_rate() <= ticks && ticks <= range.max_sample_rate();
-        (
-            format == 100,
-            !rate,
-            range.channels().abs_diff(2),
-            format,
-        )
+        (format == 100, !rate, range.channels().abs_diff(2), format)
     };
     let best = device.supported_output_configs()?.min_by_key(rank);
     let Some(best) = best else {

@@ -1,0 +1,206 @@
+//! The commands of the live face, each put together from the modules beside this one.
+
+use std::time::Duration;
+
+use anyhow::{Result, bail};
+use mouthpiece_render::{Background, Tier, View};
+use tokio::runtime::Runtime;
+use tokio::sync::oneshot;
+
+use super::address::Address;
+use super::client;
+use super::player::{Player, Sight};
+use super::server::Server;
+use super::sound::Choice;
+use super::source::Source;
+use super::speaker;
+use super::stop::Stop;
+use super::sync::{self, Flash};
+use super::window::{Display, Look, Wake};
+use crate::cli::{RunArgs, SayArgs, StageArgs, TierArg};
+use crate::interrupt::Interrupted;
+use crate::pipeline::Cast;
+
+/// How long sockets may take to close.
+const CLOSE_PATIENCE: Duration = Duration::from_millis(300);
+
+/// The daemon.
+pub fn run(args: &RunArgs) -> Result<()> {
+    let stop = Stop::default();
+    let net = runtime(&stop)?;
+    let address = match &args.listen {
+        Some(text) => Address::parse(text)?,
+        None => Address::user_default()?,
+    };
+    // First, so that a second daemon ends before it has cost anything.
+    let server = net.block_on(Server::bind(&address))?;
+    let cast = Cast::reference()?;
+    let (player, sight) = Player::start(&cast, choice(&args.stage), args.stage.seed)?;
+    let serving = net.spawn(server.serve(player.handle()));
+    let seen = match Display::open() {
+        Ok(display) => show(display, &net, &cast, sight, &args.stage, &stop, None, None),
+        Err(error) => Err(error),
+    };
+    if let Err(error) = seen {
+        tracing::warn!("{error:#}; going on without a window");
+        net.block_on(stop.wait());
+    }
+    stop.ask();
+    serving.abort();
+    net.shutdown_timeout(CLOSE_PATIENCE);
+    player.end()
+}
+
+/// One utterance: through the daemon where there is one, else in a window of its own.
+pub fn say(args: &SayArgs) -> Result<()> {
+    let stop = Stop::default();
+    let net = runtime(&stop)?;
+    let address = match &args.listen {
+        Some(text) => Some(Address::parse(text)?),
+        None => Address::user_default().ok(),
+    };
+    if let Some(address) = address {
+        match net.block_on(client::connect(&address)) {
+            Ok(stream) => {
+                let source = Source::open(&args.input)?;
+                tracing::info!(%address, "speaking through the daemon");
+                return net.block_on(client::speak(stream, source, &stop));
+            }
+            Err(error) if args.listen.is_some() => {
+                bail!(
+                    "no daemon answers at {address} ({error}); start one: mouthpiece run --listen {address}"
+                )
+            }
+            Err(_) => {}
+        }
+    }
+    perform(Source::open(&args.input)?, &args.stage, None, &net, &stop)
+}
+
+/// Clicks with flashes for `seconds`, for a recorder outside to judge.
+pub fn sync_test(stage: &StageArgs, seconds: u32) -> Result<()> {
+    let stop = Stop::default();
+    let net = runtime(&stop)?;
+    let (source, flash) = sync::clicks(seconds)?;
+    perform(source, stage, Some(flash), &net, &stop)
+}
+
+/// Speaks `source` in this process.
+fn perform(
+    source: Source,
+    stage: &StageArgs,
+    flash: Option<Flash>,
+    net: &Runtime,
+    stop: &Stop,
+) -> Result<()> {
+    let cast = Cast::reference()?;
+    let (player, sight) = Player::start(&cast, choice(stage), stage.seed)?;
+    let display = match Display::open() {
+        Ok(display) => Some(display),
+        Err(error) if player.has_sound() => {
+            tracing::warn!("{error:#}; speaking without a window");
+            None
+        }
+        Err(error) => {
+            player.end()?;
+            bail!(
+                "{error:#}, and no sound device either; write a video instead: mouthpiece export"
+            );
+        }
+    };
+    let (first, first_shown) = oneshot::channel();
+    let start = flash.as_ref().map(|f| std::sync::Arc::clone(&f.start));
+    let windowed = display.is_some();
+    let speaking = {
+        let (handle, stop) = (player.handle(), stop.clone());
+        net.spawn(async move {
+            // A window that never shows anything ends the process by itself.
+            if windowed && first_shown.await.is_err() {
+                return Ok(());
+            }
+            let spoken = tokio::select! {
+                spoken = speaker::speak(handle, source, start) => spoken,
+                () = stop.wait() => Ok(()),
+            };
+            stop.ask();
+            spoken
+        })
+    };
+    let seen = match display {
+        Some(display) => show(display, net, &cast, sight, stage, stop, flash, Some(first)),
+        None => {
+            net.block_on(stop.wait());
+            Ok(())
+        }
+    };
+    stop.ask();
+    let spoken = net.block_on(speaking)?;
+    player.end()?;
+    seen?;
+    spoken?;
+    if stop.by_signal() {
+        return Err(Interrupted.into());
+    }
+    Ok(())
+}
+
+/// Runs the window until it is closed or the end is asked for.
+#[allow(
+    clippy::too_many_arguments,
+    reason = "the one place where everything that is seen comes together"
+)]
+fn show(
+    display: Display,
+    net: &Runtime,
+    cast: &Cast,
+    sight: Sight,
+    stage: &StageArgs,
+    stop: &Stop,
+    flash: Option<Flash>,
+    shown: Option<oneshot::Sender<()>>,
+) -> Result<()> {
+    let (proxy, stopping) = (display.proxy(), stop.clone());
+    net.spawn(async move {
+        stopping.wait().await;
+        // Closed already: nothing to wake.
+        let _ = proxy.send_event(Wake::Quit);
+    });
+    let look = look(stage);
+    display.show(std::sync::Arc::clone(&cast.head), sight, look, flash, shown)
+}
+
+fn look(stage: &StageArgs) -> Look {
+    let mut view = View::default();
+    if let Some(colour) = stage.background {
+        view.background = Background::Plain(colour.0);
+    }
+    Look {
+        size: (stage.size.width, stage.size.height),
+        fullscreen: stage.fullscreen,
+        tier: match stage.tier {
+            TierArg::Low => Tier::Low,
+            TierArg::Medium => Tier::Medium,
+            TierArg::High => Tier::High,
+        },
+        view,
+    }
+}
+
+fn choice(stage: &StageArgs) -> Choice {
+    match stage.audio_device.as_deref() {
+        None => Choice::Default,
+        Some("none") => Choice::Silent,
+        Some(id) => Choice::Id(id.to_owned()),
+    }
+}
+
+/// Sockets and control, on one thread: nothing real-time runs there.
+fn runtime(stop: &Stop) -> Result<Runtime> {
+    let net = tokio::runtime::Builder::new_multi_thread()
+        .worker_threads(1)
+        .thread_name("net")
+        .enable_all()
+        .build()?;
+    net.spawn(stop.clone().on_signals());
+    Ok(net)
+}

@@ -1,0 +1,89 @@
+//! A test of sound against picture that others judge: clicks, and a flash at the same audible instant.
+//!
+//! The clicks are an utterance like any other and the flash goes by the tick that each picture is
+//! drawn for, so both take the very path that speech takes. The mouth opens with each click, too.
+//! Whoever records sound and screen from outside finds how far apart they are; nothing here
+//! measures itself.
+
+use std::sync::Arc;
+use std::sync::atomic::{AtomicI64, Ordering};
+
+use anyhow::Result;
+use mouthpiece_phonemes::{Phone, Segment};
+use mouthpiece_rig::TICK_RATE;
+
+use super::source::Source;
+use super::utterance::NOT_STARTED;
+
+/// How long a flash and the open mouth last.
+const FLASH_TICKS: i64 = TICK_RATE / 10;
+/// How long a click lasts: short, for a sharp onset, long enough for a recorder at any rate.
+const CLICK_TICKS: i64 = TICK_RATE * 8 / 1000;
+/// Clicks are a second apart and a little more or less, so that their phase against the pictures
+/// on the screen varies instead of favouring one.
+const DITHER_MS: i64 = 37;
+
+/// When the picture flashes.
+#[derive(Clone, Debug)]
+pub struct Flash {
+    /// First tick of the clicks' utterance, once it is known.
+    pub start: Arc<AtomicI64>,
+    clicks: Arc<[i64]>,
+}
+
+impl Flash {
+    /// Whether the picture of `tick` flashes.
+    pub fn is_lit(&self, tick: i64) -> bool {
+        let start = self.start.load(Ordering::Acquire);
+        let Some(local) = tick.checked_sub(start).filter(|_| start != NOT_STARTED) else {
+            return false;
+        };
+        let next = self.clicks.partition_point(|c| *c <= local);
+        next > 0 && local - self.clicks[next - 1] < FLASH_TICKS
+    }
+}
+
+/// `seconds` of clicks as something to say, and the flashes that go with them.
+pub fn clicks(seconds: u32) -> Result<(Source, Flash)> {
+    let clicks: Vec<i64> = (0..i64::from(seconds))
+        .map(|n| (n + 1) * TICK_RATE + (n * 13 % DITHER_MS) * TICK_RATE / 1000)
+        .collect();
+    let ticks = (i64::from(seconds) + 2) * TICK_RATE;
+    let mut sound = vec![0.0_f32; usize::try_from(ticks)?];
+    let mut segments = Vec::new();
+    let mut quiet_from = 0;
+    for &click in &clicks {
+        let from = usize::try_from(click)?;
+        for (n, sample) in sound[from..][..usize::try_from(CLICK_TICKS)?]
+            .iter_mut()
+            .enumerate()
+        {
+            // 2 kHz, square: as loud in its first sample as in any.
+            *sample = if n / 12 % 2 == 0 { 0.7 } else { -0.7 };
+        }
+        segments.push(Segment::new(Phone::Pau, quiet_from, click));
+        segments.push(Segment::new(Phone::Aa, click, click + FLASH_TICKS));
+        quiet_from = click + FLASH_TICKS;
+    }
+    segments.push(Segment::new(Phone::HSharp, quiet_from, ticks));
+    let flash = Flash {
+        start: Arc::new(AtomicI64::new(NOT_STARTED)),
+        clicks: clicks.into(),
+    };
+    Ok((Source::of(segments, Some(sound))?, flash))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn it_flashes_from_each_click_on_and_not_before_the_start_is_known() {
+        let (_, flash) = clicks(3).unwrap();
+        let at = flash.clicks[1];
+        assert!(!flash.is_lit(at));
+        flash.start.store(1000, Ordering::Release);
+        let lit = |tick: i64| flash.is_lit(1000 + tick);
+        assert!(!lit(at - 1) && lit(at) && lit(at + FLASH_TICKS - 1) && !lit(at + FLASH_TICKS));
+    }
+}

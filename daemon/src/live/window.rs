@@ -1,0 +1,302 @@
+//! The main thread: a window that shows the head as it is when the picture can be seen.
+//!
+//! Wanted: each picture shows the instant that is heard in the middle of its time on the screen;
+//! no processor is burnt while nothing new can be shown; whatever becomes of the surface or the
+//! card, nothing panics and the rest of the process goes on.
+//!
+//! Pictures are paced by this thread's own timer, since presenting does not block everywhere. Time
+//! is the audible clock's, taken once per picture, plus what drawing took lately, plus half the
+//! time until the next picture.
+
+use std::sync::Arc;
+
+use anyhow::{Context as _, Result};
+use mouthpiece_render::{Outcome, Tier, View, WindowTarget};
+use mouthpiece_rig::{Head, KeyFrame};
+use tokio::sync::oneshot;
+use winit::application::ApplicationHandler;
+use winit::dpi::{PhysicalPosition, PhysicalSize};
+use winit::event::{ElementState, StartCause, WindowEvent};
+use winit::event_loop::{ActiveEventLoop, ControlFlow, EventLoop, EventLoopProxy};
+use winit::keyboard::{Key, NamedKey};
+use winit::window::{Fullscreen, Window, WindowId};
+
+use super::player::Sight;
+use super::sync::Flash;
+use super::time::ticks_from_ns;
+
+mod pace;
+
+use pace::Pace;
+
+/// The window's title.
+const TITLE: &str = "Mouthpiece";
+/// How long a covered window rests, and one whose card failed.
+const HIDDEN_NS: i64 = 100_000_000;
+const FAILED_NS: i64 = 1_000_000_000;
+/// Failures in a row after which the window is given up.
+const FAILURES_MAX: u32 = 5;
+
+/// What other threads tell the event loop.
+#[derive(Clone, Copy, Debug)]
+pub enum Wake {
+    /// The process is to end.
+    Quit,
+}
+
+/// How the window looks.
+#[derive(Clone, Copy, Debug)]
+pub struct Look {
+    pub size: (u32, u32),
+    pub fullscreen: bool,
+    pub tier: Tier,
+    pub view: View,
+}
+
+/// A connection to the display.
+pub struct Display(EventLoop<Wake>);
+
+impl Display {
+    /// Connects; an error where there is no display. Main thread only.
+    pub fn open() -> Result<Self> {
+        let events = EventLoop::with_user_event().build();
+        Ok(Self(
+            events.context("there is no display to open a window on")?,
+        ))
+    }
+
+    /// Wakes the event loop from other threads.
+    pub fn proxy(&self) -> EventLoopProxy<Wake> {
+        self.0.create_proxy()
+    }
+
+    /// Shows `head` until the window is closed or [`Wake::Quit`] comes. `shown` learns of the first
+    /// picture.
+    pub fn show(
+        self,
+        head: Arc<Head>,
+        sight: Sight,
+        look: Look,
+        flash: Option<Flash>,
+        shown: Option<oneshot::Sender<()>>,
+    ) -> Result<()> {
+        let mut app = App {
+            head,
+            sight,
+            look,
+            flash,
+            shown,
+            frame: KeyFrame::default(),
+            last_tick: i64::MIN,
+            open: None,
+            pace: Pace::default(),
+            failures: 0,
+            error: None,
+        };
+        self.0
+            .run_app(&mut app)
+            .context("the connection to the display broke")?;
+        app.pace.report();
+        app.error.map_or(Ok(()), Err)
+    }
+}
+
+struct App {
+    head: Arc<Head>,
+    sight: Sight,
+    look: Look,
+    flash: Option<Flash>,
+    shown: Option<oneshot::Sender<()>>,
+    frame: KeyFrame,
+    last_tick: i64,
+    open: Option<Open>,
+    pace: Pace,
+    failures: u32,
+    error: Option<anyhow::Error>,
+}
+
+struct Open {
+    // Dropped before the window.
+    target: Option<WindowTarget>,
+    window: Arc<Window>,
+}
+
+impl ApplicationHandler<Wake> for App {
+    fn resumed(&mut self, events: &ActiveEventLoop) {
+        if self.open.is_some() {
+            return;
+        }
+        match self.open_window(events) {
+            Ok(open) => {
+                self.open = Some(open);
+                self.pace.due_now(self.sight.origin.now_ns());
+            }
+            Err(error) => self.give_up(events, error),
+        }
+    }
+
+    fn new_events(&mut self, _events: &ActiveEventLoop, cause: StartCause) {
+        if let (StartCause::ResumeTimeReached { .. }, Some(open)) = (cause, &self.open) {
+            open.window.request_redraw();
+        }
+    }
+
+    fn user_event(&mut self, events: &ActiveEventLoop, wake: Wake) {
+        match wake {
+            Wake::Quit => events.exit(),
+        }
+    }
+
+    fn window_event(&mut self, events: &ActiveEventLoop, _id: WindowId, event: WindowEvent) {
+        match event {
+            WindowEvent::CloseRequested | WindowEvent::Destroyed => events.exit(),
+            WindowEvent::KeyboardInput { event, .. } => {
+                if event.state == ElementState::Pressed
+                    && event.logical_key == Key::Named(NamedKey::Escape)
+                {
+                    events.exit();
+                }
+            }
+            WindowEvent::Resized(size) => {
+                if let Some(target) = self.open.as_mut().and_then(|o| o.target.as_mut()) {
+                    target.resize((size.width, size.height));
+                }
+            }
+            WindowEvent::RedrawRequested => self.draw(events),
+            _ => {}
+        }
+    }
+
+    fn about_to_wait(&mut self, events: &ActiveEventLoop) {
+        let due_ns = self.pace.due_ns();
+        if self.open.is_none() {
+            events.set_control_flow(ControlFlow::Wait);
+            return;
+        }
+        let due = self.sight.origin.instant(due_ns);
+        events.set_control_flow(ControlFlow::WaitUntil(due));
+    }
+
+    fn exiting(&mut self, _events: &ActiveEventLoop) {
+        // The surface goes before the connection to the display does.
+        self.open = None;
+    }
+}
+
+impl App {
+    fn open_window(&mut self, events: &ActiveEventLoop) -> Result<Open> {
+        let mut attributes = Window::default_attributes()
+            .with_title(TITLE)
+            .with_inner_size(PhysicalSize::new(self.look.size.0, self.look.size.1));
+        let monitor = events
+            .primary_monitor()
+            .or_else(|| events.available_monitors().next());
+        if let Some(millihertz) = monitor.as_ref().and_then(|m| m.refresh_rate_millihertz()) {
+            self.pace.set_refresh(millihertz);
+        }
+        if self.look.fullscreen {
+            attributes = attributes
+                .with_decorations(false)
+                .with_fullscreen(Some(Fullscreen::Borderless(None)));
+            // Without a window manager nobody makes the window as large as asked for.
+            if let Some(monitor) = &monitor {
+                attributes = attributes
+                    .with_inner_size(monitor.size())
+                    .with_position(PhysicalPosition::new(0, 0));
+            }
+        }
+        let window = events
+            .create_window(attributes)
+            .context("no window could be opened")?;
+        let window = Arc::new(window);
+        if self.look.fullscreen {
+            window.set_cursor_visible(false);
+        }
+        let target = self.target(&window)?;
+        Ok(Open {
+            target: Some(target),
+            window,
+        })
+    }
+
+    fn target(&mut self, window: &Arc<Window>) -> Result<WindowTarget> {
+        let size = window.inner_size();
+        let size = (size.width, size.height);
+        let target = WindowTarget::new(Arc::clone(window), size, &self.head, self.look.tier)?;
+        self.pace.set_software(target.gpu().is_software());
+        Ok(target)
+    }
+
+    fn draw(&mut self, events: &ActiveEventLoop) {
+        let now_ns = self.sight.origin.now_ns();
+        if !self.pace.is_due(now_ns) {
+            return; // asked for by the window system; the timer asks again
+        }
+        match self.picture(now_ns) {
+            Ok(Outcome::Shown) => {
+                self.failures = 0;
+                self.pace.shown(now_ns, self.sight.origin.now_ns());
+                if let Some(shown) = self.shown.take() {
+                    let _ = shown.send(()); // nobody waits any more
+                }
+            }
+            Ok(Outcome::Retry) => self.pace.retry(now_ns),
+            Ok(Outcome::Hidden) => self.pace.rest(now_ns, HIDDEN_NS),
+            Err(error) => {
+                self.failures += 1;
+                if self.failures >= FAILURES_MAX {
+                    return self.give_up(events, error);
+                }
+                tracing::warn!("{error:#}; the window is set up again");
+                if let Some(open) = &mut self.open {
+                    open.target = None;
+                }
+                self.pace.rest(now_ns, FAILED_NS);
+            }
+        }
+    }
+
+    /// Draws the picture that can be seen soonest.
+    fn picture(&mut self, now_ns: i64) -> Result<Outcome> {
+        let heard = self.sight.clock.at(now_ns);
+        let tick = heard + ticks_from_ns(self.pace.ahead_ns());
+        self.last_tick = self.last_tick.max(tick);
+        if !self.sight.frames.sample(self.last_tick, &mut self.frame) {
+            return Ok(Outcome::Retry); // the simulation has not begun
+        }
+        let mut view = self.look.view;
+        view.flash |= self
+            .flash
+            .as_ref()
+            .is_some_and(|f| f.is_lit(self.last_tick));
+        let Some(open) = &self.open else {
+            return Ok(Outcome::Hidden);
+        };
+        let window = Arc::clone(&open.window);
+        let mut target = match self.open.as_mut().and_then(|o| o.target.take()) {
+            Some(target) => target,
+            None => self.target(&window)?,
+        };
+        window.pre_present_notify();
+        let outcome = target.draw(&self.frame, &view);
+        if target.gpu().is_software() {
+            // The processor draws: wait for it, to know how long it takes and to leave it some rest.
+            let done = target
+                .gpu()
+                .device()
+                .poll(wgpu::PollType::wait_indefinitely());
+            done.context("the picture was not finished")?;
+        }
+        let outcome = outcome?;
+        if let Some(open) = &mut self.open {
+            open.target = Some(target);
+        }
+        Ok(outcome)
+    }
+
+    fn give_up(&mut self, events: &ActiveEventLoop, error: anyhow::Error) {
+        self.error = Some(error);
+        self.open = None;
+        events.exit();
+    }
+}
