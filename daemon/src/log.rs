@@ -1,5 +1,7 @@
 //! The one place where logging is set up: to stderr, never to standard output.
 
+use std::io::IsTerminal as _;
+
 use tracing_subscriber::EnvFilter;
 
 /// Starts logging. Commands that end by themselves say only what is wrong unless asked for more,
@@ -14,7 +16,8 @@ pub fn start(verbose: u8, live: bool) {
     });
     let lines = tracing_subscriber::fmt()
         .with_env_filter(filter)
-        .with_writer(std::io::stderr);
+        .with_writer(std::io::stderr)
+        .with_ansi(std::io::stderr().is_terminal());
     if live {
         lines.init();
     } else {

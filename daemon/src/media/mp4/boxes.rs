@@ -95,6 +95,8 @@ struct Track<'a> {
     name: &'a [u8],
     /// Units a second, units per sample.
     rate: (u32, u32),
+    /// Units of the last sample: shorter where the sound ends within its packet.
+    last: u32,
     /// In units of [`MOVIE_RATE`].
     shown: u64,
     size: (u32, u32),
@@ -111,6 +113,7 @@ pub fn movie(plan: &Plan, config: &Config, video: &Samples, audio: &Samples) -> 
         handler: b"vide",
         name: b"picture\0",
         rate: (num * scale, den * scale),
+        last: den * scale,
         shown: frames * u64::from(MOVIE_RATE) * u64::from(den) / u64::from(num),
         size: (plan.width, plan.height),
         samples: video,
@@ -121,6 +124,7 @@ pub fn movie(plan: &Plan, config: &Config, video: &Samples, audio: &Samples) -> 
             handler: b"soun",
             name: b"sound\0",
             rate: (MOVIE_RATE, PACKET as u32),
+            last: plan.last_packet(),
             shown: plan.length,
             size: (0, 0),
             samples: audio,
@@ -172,7 +176,8 @@ fn track(b: &mut Bytes, t: &Track, skip: u16, entry: &dyn Fn(&mut Bytes)) {
         });
         b.boxed(b"mdia", |b| {
             b.full(b"mdhd", 0, 0, |b| {
-                let duration = t.samples.sizes.len() as u64 * u64::from(t.rate.1);
+                let count = t.samples.sizes.len() as u64;
+                let duration = count.saturating_sub(1) * u64::from(t.rate.1) + u64::from(t.last);
                 b.zeros(8).u32(t.rate.0).u32(duration as u32);
                 b.u16(0x55C4).u16(0); // language: undetermined
             });
@@ -202,7 +207,13 @@ fn tables(b: &mut Bytes, t: &Track, sound: bool, entry: &dyn Fn(&mut Bytes)) {
         b.u32(1);
         entry(b);
     });
-    b.full(b"stts", 0, 0, |b| _ = b.u32(1).u32(count).u32(t.rate.1));
+    b.full(b"stts", 0, 0, |b| {
+        if count > 1 && t.last != t.rate.1 {
+            b.u32(2).u32(count - 1).u32(t.rate.1).u32(1).u32(t.last);
+        } else {
+            b.u32(1).u32(count).u32(t.last);
+        }
+    });
     if !sound {
         b.full(b"stss", 0, 0, |b| {
             b.u32(t.samples.keys.len() as u32);

@@ -8,6 +8,7 @@ use std::io::{self, Seek, SeekFrom, Write};
 
 use super::boxes;
 use super::h264::Config;
+use super::opus::PACKET;
 
 /// What the file will hold.
 #[derive(Clone, Debug)]
@@ -27,6 +28,15 @@ pub struct AudioPlan {
     /// Samples dropped before them.
     pub pre_skip: u16,
     pub packets: u64,
+}
+
+impl AudioPlan {
+    /// Samples of the last packet that belong to the sound.
+    pub fn last_packet(&self) -> u32 {
+        let coded = self.length + u64::from(self.pre_skip);
+        let before = self.packets.saturating_sub(1) * PACKET;
+        u32::try_from(coded.saturating_sub(before)).unwrap_or(PACKET as u32)
+    }
 }
 
 /// Where the samples of one track lie.

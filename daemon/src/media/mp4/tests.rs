@@ -93,6 +93,7 @@ fn picture_and_sound_begin_at_zero_and_end_within_a_frame() {
         let (shown, skip) = (u32_at(edits[1], 8), u32_at(edits[1], 12));
         assert_eq!((u32_at(edits[0], 12), skip), (0, 312));
         assert_eq!(shown, 13 * 4800);
+        assert_eq!(u32_at(media[1], 16), shown + skip);
         assert!((video - f64::from(shown)).abs() < frame, "{video} {shown}");
         // The table of contents stands in front, and the picture can be jumped to.
         assert!(
