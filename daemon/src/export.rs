@@ -115,12 +115,12 @@ impl Job {
                 })
                 .transpose()?;
             // The card draws one picture while the one before it is read back.
-            if next.is_none() || offscreen.in_flight() >= FRAMES_IN_FLIGHT {
-                if let Some(rgba) = offscreen.take()? {
-                    encoder.push(rgba)?;
-                    drawn += 1;
-                    bar.set_position(drawn);
-                }
+            if (next.is_none() || offscreen.in_flight() >= FRAMES_IN_FLIGHT)
+                && let Some(rgba) = offscreen.take()?
+            {
+                encoder.push(rgba)?;
+                drawn += 1;
+                bar.set_position(drawn);
             }
         }
         instants.finish()?;

@@ -80,10 +80,10 @@ impl Utterance {
         for warning in check(&labels, sound_ticks) {
             match warning {
                 Warning::BeyondSound { .. } => {
-                    tracing::warn!("{name}: {warning}; silence is added")
+                    tracing::warn!("{name}: {warning}; silence is added");
                 }
                 Warning::ShortOfSound { .. } => {
-                    tracing::warn!("{name}: {warning}; the mouth rests there")
+                    tracing::warn!("{name}: {warning}; the mouth rests there");
                 }
                 _ => tracing::info!("{name}: {warning}"),
             }

@@ -9,7 +9,8 @@ use tracing_subscriber::EnvFilter;
 pub fn start(verbose: u8, live: bool) {
     let filter = EnvFilter::try_from_default_env().unwrap_or_else(|_| {
         EnvFilter::new(match (verbose, live) {
-            (0, false) => "warn",
+            // That pictures are drawn in software concerns a window; an export only takes longer.
+            (0, false) => "warn,mouthpiece_render::gpu=error",
             (0, true) | (1, _) => "warn,mouthpiece=info,mouthpiece_render=info",
             _ => "info,mouthpiece=debug,mouthpiece_render=debug",
         })

@@ -196,9 +196,9 @@ mod tests {
 
     fn part(cast: &Cast) -> Part {
         let segments = [
-            Segment::new(Phone::HSharp, 0, 4_800),
-            Segment::new(Phone::Aa, 4_800, 14_400),
-            Segment::new(Phone::HSharp, 14_400, 19_200),
+            Segment::new(Phone::HSharp, 0, 24_000),
+            Segment::new(Phone::Aa, 24_000, 33_600),
+            Segment::new(Phone::HSharp, 33_600, 38_400),
         ];
         Part::new(cast, &segments, Some(3))
     }
@@ -210,18 +210,18 @@ mod tests {
         let mut often = Performance::new(Arc::clone(&cast.head), part(&cast));
         let mut once = Performance::new(Arc::clone(&cast.head), part(&cast));
         let (mut a, mut b) = (Instant::default(), Instant::default());
-        for ticks in [0, 7, 80, 81, 1601, 3200, 3203, 9999] {
+        for ticks in [0, 7, 80, 81, 1601, 3200, 3203, 29_999] {
             often.at(ticks, &mut a);
         }
-        once.at(9999, &mut b);
-        assert_eq!(a.frame.time, 9999);
+        once.at(29_999, &mut b);
+        assert_eq!(a.frame.time, 29_999);
         assert_eq!(a.frame, b.frame);
     }
 
     #[test]
     fn the_thread_gives_what_the_performance_gives_and_the_head_is_settled_at_first() {
         let cast = Cast::reference().unwrap();
-        let times = || (0..12).map(|k| k * 1601);
+        let times = || (0..20).map(|k| k * 1601);
         let mut performance = Performance::new(Arc::clone(&cast.head), part(&cast));
         let instants = Instants::start(Arc::clone(&cast.head), part(&cast), times()).unwrap();
         let mut expected = Instant::default();

@@ -70,11 +70,6 @@ impl Fps {
         u64::try_from(frames).unwrap_or(u64::MAX)
     }
 
-    /// The rate as a number, for encoders that want one.
-    pub fn hz(self) -> f64 {
-        f64::from(self.num) / f64::from(self.den)
-    }
-
     fn new(num: u32, den: u32) -> Option<Self> {
         let ok =
             num >= den && den > 0 && u64::from(num) <= u64::from(den) * u64::from(Self::HZ_MAX);

@@ -1,9 +1,9 @@
 //! Video through the ffmpeg program of this machine, for codecs and containers we do not write.
 //!
 //! Only when asked for by `--via-ffmpeg`: what comes out depends on that program's version.
-//! Frames go into its standard input; the sound lies in a temporary WAV beside.
+//! Frames go into its standard input; the sound lies in a temporary file beside.
 
-use std::io::{Read as _, Write as _};
+use std::io::{BufWriter, Read as _, Write as _};
 use std::path::Path;
 use std::process::{Child, Command, Stdio};
 
@@ -41,7 +41,7 @@ impl FfmpegSink {
             ]);
         if let Some(sound) = &sound {
             command
-                .arg("-i")
+                .args(["-f", "f32le", "-ar", "48000", "-ac", "1", "-i"])
                 .arg(sound.path())
                 .args(["-map", "0:v", "-map", "1:a"]);
         }
@@ -135,21 +135,17 @@ impl Drop for FfmpegSink {
     }
 }
 
+/// The sound as ffmpeg reads it without a header: 32-bit floats.
 fn sound_file(sound: &[f32]) -> anyhow::Result<NamedTempFile> {
-    let file = tempfile::Builder::new()
+    let mut file = tempfile::Builder::new()
         .prefix("mouthpiece-")
-        .suffix(".wav")
+        .suffix(".f32")
         .tempfile()?;
-    let spec = hound::WavSpec {
-        channels: 1,
-        sample_rate: 48_000,
-        bits_per_sample: 32,
-        sample_format: hound::SampleFormat::Float,
-    };
-    let mut writer = hound::WavWriter::new(std::io::BufWriter::new(file.reopen()?), spec)?;
-    for &x in sound {
-        writer.write_sample(x)?;
+    let mut out = BufWriter::new(file.as_file_mut());
+    for x in sound {
+        out.write_all(&x.to_le_bytes())?;
     }
-    writer.finalize()?;
+    out.flush()?;
+    drop(out);
     Ok(file)
 }

@@ -104,16 +104,17 @@ pub fn print(text: &str) -> anyhow::Result<()> {
 
 /// The one sentence for a file that cannot be written.
 pub fn unwritable(target: &Path, error: &io::Error) -> anyhow::Error {
-    let mend = match error.kind() {
-        io::ErrorKind::NotFound => "; make its folder first",
-        io::ErrorKind::PermissionDenied | io::ErrorKind::ReadOnlyFilesystem => {
-            "; choose a folder that you may write to"
+    let why = match error.kind() {
+        io::ErrorKind::NotFound => {
+            "its folder does not exist or takes no files; make it first".into()
         }
-        io::ErrorKind::StorageFull => "; free some space",
-        _ => "",
+        io::ErrorKind::PermissionDenied | io::ErrorKind::ReadOnlyFilesystem => {
+            "you may not write there; choose another folder".into()
+        }
+        io::ErrorKind::StorageFull => "there is no space left; free some".into(),
+        _ => error.to_string(),
     };
-    let why = error.kind();
-    anyhow::anyhow!("cannot write {}: {why}{mend}", target.display())
+    anyhow::anyhow!("cannot write {}: {why}", target.display())
 }
 
 /// Names and permissions of files in the making. The ending stays, since programs go by it.
@@ -165,7 +166,7 @@ mod tests {
         let error = Output::create(&dir.path().join("no/a.mp4"))
             .unwrap_err()
             .to_string();
-        assert!(error.contains("make its folder"), "{error}");
+        assert!(error.contains("make it first"), "{error}");
     }
 
     #[cfg(unix)]

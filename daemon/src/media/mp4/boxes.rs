@@ -245,7 +245,7 @@ fn tables(b: &mut Bytes, t: &Track, sound: bool, entry: &dyn Fn(&mut Bytes)) {
                 .u16((-OPUS_ROLL_PACKETS).cast_unsigned());
         });
         b.full(b"sbgp", 0, 0, |b| {
-            _ = b.raw(b"roll").u32(1).u32(count).u32(1)
+            _ = b.raw(b"roll").u32(1).u32(count).u32(1);
         });
     }
 }
