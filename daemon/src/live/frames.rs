@@ -90,11 +90,6 @@ impl FrameReader {
         true
     }
 
-    /// The last instant that there is a frame for.
-    pub fn ahead_until(&self) -> Option<i64> {
-        self.held.back().map(|f| f.time)
-    }
-
     fn take_in(&mut self, time: i64) {
         loop {
             self.drop_before(time);

@@ -22,10 +22,12 @@ const CLIENTS_MAX: usize = 32;
 pub struct Server {
     listener: Listener,
     limits: Limits,
+    /// Held until the daemon ends.
+    _file: Option<SocketFile>,
 }
 
 enum Listener {
-    Unix(UnixListener, SocketFile),
+    Unix(UnixListener),
     Tcp(TcpListener),
 }
 
@@ -43,12 +45,17 @@ impl Drop for SocketFile {
 impl Server {
     /// Binds `address`; a socket that another daemon answers at is refused. Call inside the runtime.
     pub async fn bind(address: &Address) -> Result<Self> {
-        let listener = match address {
-            Address::Unix(path) => Listener::Unix(bind_unix(path).await?, SocketFile(path.clone())),
+        let (listener, file) = match address {
+            Address::Unix(path) => {
+                let listener = Listener::Unix(bind_unix(path).await?);
+                (listener, Some(SocketFile(path.clone())))
+            }
             Address::Loopback(socket) => {
-                Listener::Tcp(TcpListener::bind(socket).await.with_context(|| {
+                let bound = TcpListener::bind(socket).await;
+                let bound = bound.with_context(|| {
                     format!("cannot listen at {socket}; give --listen another port")
-                })?)
+                })?;
+                (Listener::Tcp(bound), None)
             }
         };
         let limits = Limits {
@@ -57,7 +64,11 @@ impl Server {
             ..Limits::default()
         };
         tracing::info!(%address, "listening");
-        Ok(Self { listener, limits })
+        Ok(Self {
+            listener,
+            limits,
+            _file: file,
+        })
     }
 
     /// Serves clients for ever.
@@ -65,7 +76,7 @@ impl Server {
         let room = Arc::new(Semaphore::new(CLIENTS_MAX));
         loop {
             let accepted = match &self.listener {
-                Listener::Unix(listener, _) => listener.accept().await.map(|(s, _)| {
+                Listener::Unix(listener) => listener.accept().await.map(|(s, _)| {
                     let (r, w) = s.into_split();
                     (Box::new(r) as _, Box::new(w) as _)
                 }),

@@ -18,11 +18,6 @@ impl Stop {
         self.token.cancel();
     }
 
-    /// Whether the end was asked for.
-    pub fn asked(&self) -> bool {
-        self.token.is_cancelled()
-    }
-
     /// Whether it was a signal that asked.
     pub fn by_signal(&self) -> bool {
         self.by_signal.load(Ordering::Acquire)

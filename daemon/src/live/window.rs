@@ -10,7 +10,7 @@
 
 use std::sync::Arc;
 
-use anyhow::{Context as _, Result};
+use anyhow::{Context as _, Result, anyhow, bail};
 use mouthpiece_render::{Outcome, Tier, View, WindowTarget};
 use mouthpiece_rig::{Head, KeyFrame};
 use tokio::sync::oneshot;
@@ -59,10 +59,17 @@ pub struct Display(EventLoop<Wake>);
 impl Display {
     /// Connects; an error where there is no display. Main thread only.
     pub fn open() -> Result<Self> {
-        let events = EventLoop::with_user_event().build();
-        Ok(Self(
-            events.context("there is no display to open a window on")?,
-        ))
+        let named = ["WAYLAND_DISPLAY", "WAYLAND_SOCKET", "DISPLAY"]
+            .into_iter()
+            .find_map(|name| std::env::var(name).ok().filter(|v| !v.is_empty()));
+        if cfg!(target_os = "linux") && named.is_none() {
+            bail!("there is no display (neither WAYLAND_DISPLAY nor DISPLAY is set)");
+        }
+        let events = EventLoop::with_user_event().build().map_err(|error| {
+            tracing::debug!(%error, "no event loop");
+            anyhow!("the display {} cannot be opened", named.unwrap_or_default())
+        })?;
+        Ok(Self(events))
     }
 
     /// Wakes the event loop from other threads.

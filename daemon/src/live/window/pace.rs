@@ -8,6 +8,8 @@ const SOFTWARE_NS: i64 = 1_000_000_000 / 30;
 const REST_TENTHS: i64 = 3;
 /// Slow pictures count no further than this, so that one hiccup does not shift those after it.
 const DRAW_NS_MAX: i64 = 150_000_000;
+/// The first pictures load pipelines and maps: how long they take says nothing.
+const FIRST_PICTURES: u64 = 3;
 /// Each picture's time counts one in so many.
 const SMOOTH: i64 = 8;
 
@@ -79,14 +81,14 @@ impl Pace {
     /// A picture that was begun at `begun_ns` is on its way to the screen.
     pub(super) fn shown(&mut self, begun_ns: i64, now_ns: i64) {
         let took = (now_ns - begun_ns).clamp(0, DRAW_NS_MAX);
-        self.draw_ns = if self.first_ns.is_none() {
-            took
-        } else {
-            self.draw_ns + (took - self.draw_ns) / SMOOTH
-        };
+        self.shown += 1;
+        if self.shown == FIRST_PICTURES {
+            self.draw_ns = took;
+        } else if self.shown > FIRST_PICTURES {
+            self.draw_ns += (took - self.draw_ns) / SMOOTH;
+        }
         self.first_ns.get_or_insert(now_ns);
         self.last_ns = now_ns;
-        self.shown += 1;
         // In step with the last one, unless that was late.
         let next = self.due_ns + self.interval_ns();
         self.due_ns = if next < now_ns { now_ns } else { next };
