@@ -18,6 +18,9 @@ pub const STEP_TICKS: i64 = 80;
 const STEP_S: f32 = STEP_TICKS as f32 / TICK_RATE as f32;
 /// Damping per mass, 1/s: a little over critical for a vertex on its muscle.
 const DAMPING: f32 = 420.0;
+/// Share of its stiffness that a skin edge keeps when it is pressed together: skin goes slack rather
+/// than buckle.
+const SLACK: f32 = 0.12;
 /// How fast components follow their controls (critically damped), 1/s.
 const MUSCLE_RATE: f32 = 170.0;
 const JAW_RATE: f32 = 130.0;
@@ -310,7 +313,8 @@ impl Simulation {
         for edge in blocks.remainder() {
             let [a, b] = edge.ends.map(|i| i as usize);
             let d = self.position[b] - self.position[a];
-            let pull = d * (stiffness * (1.0 - edge.rest_mm / d.length().max(1e-4)));
+            let strain = 1.0 - edge.rest_mm / d.length().max(1e-4);
+            let pull = d * (stiffness * strain.max(SLACK * strain));
             self.force[a] += pull;
             self.force[b] -= pull;
         }
@@ -323,7 +327,8 @@ impl Simulation {
                 gain[lane] = d[lane].length_squared();
             }
             for lane in 0..LANES {
-                gain[lane] = stiffness * (1.0 - block[lane].rest_mm / gain[lane].max(1e-8).sqrt());
+                let strain = 1.0 - block[lane].rest_mm / gain[lane].max(1e-8).sqrt();
+                gain[lane] = stiffness * strain.max(SLACK * strain);
             }
             for lane in 0..LANES {
                 let [a, b] = block[lane].ends.map(|i| i as usize);

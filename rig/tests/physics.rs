@@ -14,6 +14,10 @@ use proptest::prelude::*;
 #[global_allocator]
 static ALLOCATOR: AllocDisabler = AllocDisabler;
 
+#[allow(
+    clippy::unwrap_used,
+    reason = "a helper of tests; clippy sees only test functions"
+)]
 fn head() -> &'static Arc<Head> {
     static HEAD: OnceLock<Arc<Head>> = OnceLock::new();
     HEAD.get_or_init(|| Arc::new(Head::reference().unwrap()))

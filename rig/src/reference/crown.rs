@@ -4,13 +4,18 @@ use glam::{Vec3, vec3};
 
 use super::layout::TOP;
 use super::skin::Vertex;
+use super::surface::Surface;
 
 /// Height of the highest point of the head (Farkas's v), mm, and where it lies.
-const VERTEX: Vec3 = vec3(0.0, 145.05, 0.2);
+pub(super) const VERTEX: Vec3 = vec3(0.0, 145.05, 0.2);
 const RINGS: usize = 5;
 
 /// Closes the mesh above the chart's upper border.
-pub(super) fn close(vertices: &mut Vec<Vertex>, triangles: &mut Vec<[usize; 3]>) {
+pub(super) fn close(
+    vertices: &mut Vec<Vertex>,
+    triangles: &mut Vec<[usize; 3]>,
+    surface: &Surface,
+) {
     let mut border: Vec<usize> = (0..vertices.len())
         .filter(|&i| (vertices[i].chart.y - TOP).abs() < 1e-3)
         .collect();
@@ -22,8 +27,9 @@ pub(super) fn close(vertices: &mut Vec<Vertex>, triangles: &mut Vec<[usize; 3]>)
             .iter()
             .map(|&i| {
                 let mut v = vertices[i];
-                v.chart.y = TOP + (VERTEX.y - TOP) * (share * std::f32::consts::FRAC_PI_2).sin();
-                v.position = over(v.position, share);
+                // Steps shorten towards the top, where the surface runs level.
+                v.chart.y = VERTEX.y - (VERTEX.y - TOP) * (1.0 - share).powi(2);
+                v.position = surface.point(v.chart);
                 vertices.push(v);
                 vertices.len() - 1
             })
@@ -37,16 +43,6 @@ pub(super) fn close(vertices: &mut Vec<Vertex>, triangles: &mut Vec<[usize; 3]>)
     vertices.push(top);
     let apex = vec![vertices.len() - 1; outer.len()];
     join(triangles, &outer, &apex);
-}
-
-/// A point of the dome, `share` of the way from the rim below it to the top.
-fn over(rim: Vec3, share: f32) -> Vec3 {
-    let level = (1.0 - share * share).sqrt().powf(0.9);
-    vec3(
-        VERTEX.x + (rim.x - VERTEX.x) * level,
-        TOP + (VERTEX.y - TOP) * (1.0 - (1.0 - share).powi(2)),
-        VERTEX.z + (rim.z - VERTEX.z) * level,
-    )
 }
 
 fn join(triangles: &mut Vec<[usize; 3]>, outer: &[usize], inner: &[usize]) {

@@ -1,6 +1,6 @@
 //! Eyeballs, the lids' hold on the skin round them.
 
-use glam::{Vec3, vec2, vec3};
+use glam::{Quat, Vec3, vec2, vec3};
 
 use super::polyline;
 use super::shapes;
@@ -116,5 +116,17 @@ impl Eyes {
             }
         }
         lids
+    }
+
+    /// Lowers the upper lids to where they rest in life, on the upper rim of the iris: the surface
+    /// data has them wide open.
+    pub(super) fn relax(&self, positions: &mut [Vec3], lids: &mut [Lid]) {
+        const SHARE: f32 = 0.13;
+        for lid in lids.iter_mut().filter(|lid| lid.turn < 0.0) {
+            let centre = self.centre * vec3(if lid.left { 1.0 } else { -1.0 }, 1.0, 1.0);
+            let place = &mut positions[lid.vertex as usize];
+            *place = centre + Quat::from_rotation_x(-lid.turn * SHARE) * (*place - centre);
+            lid.turn *= 1.0 - SHARE;
+        }
     }
 }

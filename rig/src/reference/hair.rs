@@ -1,48 +1,47 @@
-//! Short hair: a cap over the scalp that rises from the hairline. Simple on purpose; strands are the
-//! renderer's (and a later issue's) work.
+//! Short hair: a cap that grows out of the hairline. Simple on purpose; strands are the renderer's
+//! work.
 
 use glam::{Vec3, vec2, vec3};
 
-use super::shapes;
+use super::shapes::{self, ramp};
 use super::surface::{BACK, Surface, chart_of};
+use super::{crown, polyline};
 use crate::{Body, Material, Part};
 
-const COLUMNS: usize = 144;
-const ROWS: usize = 30;
-/// Thickness over the crown, mm.
-const THICKNESS: f32 = 13.0;
+const COLUMNS: usize = 240;
+const ROWS: usize = 22;
+/// Thickness over the ears and over the crown, mm, and the way from the hairline in which it grows.
+const SIDE_MM: f32 = 6.0;
+const TOP_MM: f32 = 14.0;
+const GROWTH_MM: f32 = 20.0;
 
 /// The cap. `uv`: u round the head, v from the hairline (0) to the crown (1).
 pub(super) fn cap(surface: &Surface) -> Part {
-    let line = lower_edge(surface);
-    let top = vec3(0.0, 145.0 + THICKNESS * 0.9, 2.0);
+    let edge: Vec<(f32, f32)> = surface
+        .curves
+        .hairline
+        .iter()
+        .map(|p| {
+            let chart = chart_of(*p);
+            (chart.x.clamp(0.0, BACK), chart.y)
+        })
+        .collect();
+    let meridians: Vec<Vec<Vec3>> = (0..=COLUMNS / 2)
+        .map(|i| meridian(surface, BACK * i as f32 / (COLUMNS / 2) as f32, &edge))
+        .collect();
     let mesh = shapes::outward(shapes::grid(COLUMNS, ROWS, true, |u, v| {
-        let around = 2.0 * u - 1.0;
-        let start = edge_at(&line, around.abs());
-        let chart_x = around * BACK;
-        let side = (around.abs() * std::f32::consts::PI).sin().powi(2);
-        let rim = 112.0_f32;
-        // Up the side of the head along the surface, then over the top along a dome.
-        let thick = (0.4
-            + THICKNESS * shapes::ramp(0.0, 0.30, v) * (0.62 + 0.38 * shapes::ramp(0.3, 0.8, v)))
-            * (1.0 - 0.38 * side * (1.0 - shapes::ramp(0.4, 0.7, v)));
-        let share = v / 0.62;
-        let wave = 0.7
-            * ((u * 61.0 + 9.0 * v).sin() * (v * 23.0 + 4.0 * (u * 17.0).sin()).sin())
-            * shapes::ramp(0.03, 0.2, v);
-        if share <= 1.0 {
-            let y = start + (rim - start).max(2.0) * share;
-            surface.raised(vec2(chart_x, y), thick + wave)
-        } else {
-            let base = surface.raised(vec2(chart_x, start + (rim - start).max(2.0)), thick + wave);
-            let s = (share - 1.0) / (1.0 / 0.62 - 1.0);
-            let turn = s * std::f32::consts::FRAC_PI_2;
-            vec3(
-                top.x + (base.x - top.x) * turn.cos(),
-                base.y + (top.y - base.y) * turn.sin(),
-                top.z + (base.z - top.z) * turn.cos(),
-            )
-        }
+        let column = ((2.0 * u - 1.0) * (COLUMNS / 2) as f32).round();
+        let line = &meridians[column.abs() as usize];
+        // Rows close together at the hairline, where the cap curves.
+        let share = v * (0.45 + 0.55 * v);
+        let length: f32 = line.windows(2).map(|w| w[0].distance(w[1])).sum();
+        let skin =
+            polyline::at_share(line, share) * vec3(if column < 0.0 { -1.0 } else { 1.0 }, 1.0, 1.0);
+        let out = vec3(skin.x, (skin.y - 50.0).max(0.0), skin.z - 5.0).normalize_or(Vec3::Y);
+        let full = SIDE_MM + (TOP_MM - SIDE_MM) * ramp(50.0, 125.0, skin.y);
+        let tuft = 0.5 * (u * 151.0 + 5.0 * v).sin() + 0.5 * (u * 67.0 - 11.0 * v).sin();
+        let grown = 1.0 - (-share * length / GROWTH_MM).exp();
+        skin + out * (0.25 + grown * (full + 0.8 * tuft))
     }));
     let weight = vec![0.0; mesh.positions.len()];
     Part {
@@ -54,35 +53,24 @@ pub(super) fn cap(surface: &Surface) -> Part {
     }
 }
 
-/// Height of the hairline by share of the way round (0 the front, 1 the back): the upper branch in
-/// front of and over the ear, the lower one behind it.
-fn lower_edge(surface: &Surface) -> Vec<f32> {
-    let line: Vec<Vec3> = surface.curves.hairline.clone();
-    (0..=90)
+/// The skin from the hairline up to the vertex at one longitude (a length in the chart).
+fn meridian(surface: &Surface, x: f32, edge: &[(f32, f32)]) -> Vec<Vec3> {
+    const STEPS: usize = 40;
+    let start = edge
+        .windows(2)
+        .find(|w| (w[0].0..=w[1].0).contains(&x))
+        .map_or(110.0, |w| {
+            let share = (x - w[0].0) / (w[1].0 - w[0].0).max(1e-4);
+            w[0].1 + (w[1].1 - w[0].1) * share
+        });
+    let mut line: Vec<Vec3> = (0..=STEPS)
         .map(|i| {
-            let share = i as f32 / 90.0;
-            let x = share * BACK;
-            let mut heights: Vec<f32> = line
-                .windows(2)
-                .filter_map(|w| {
-                    let (a, b) = (chart_of(w[0]), chart_of(w[1]));
-                    ((a.x <= x) != (b.x <= x)).then(|| a.y + (b.y - a.y) * (x - a.x) / (b.x - a.x))
-                })
-                .collect();
-            heights.sort_by(f32::total_cmp);
-            let highest =
-                heights
-                    .last()
-                    .copied()
-                    .unwrap_or(if share < 0.5 { 110.0 } else { -61.5 });
-            // Over the ear the cap ends above it; the sideburn is painted, not modelled.
-            highest.max(if share < 0.60 { 44.0 } else { -58.0 })
+            // Steps shorten towards the top, where the surface runs level.
+            let left = 1.0 - i as f32 / (STEPS + 1) as f32;
+            let y = crown::VERTEX.y - (crown::VERTEX.y - start) * left * left;
+            surface.point(vec2(x, y))
         })
-        .collect()
-}
-
-fn edge_at(line: &[f32], share: f32) -> f32 {
-    let at = share * (line.len() - 1) as f32;
-    let i = (at as usize).min(line.len() - 2);
-    line[i] + (line[i + 1] - line[i]) * (at - i as f32)
+        .collect();
+    line.push(crown::VERTEX);
+    line
 }

@@ -49,7 +49,7 @@ fn spacing(p: Vec2) -> f32 {
     let nose = near(vec2(0.0, 0.0), vec2(15.0, 9.0));
     let ear = near(vec2(142.0, 8.0), vec2(22.0, 30.0));
     let face = (2.3 + 0.085 * mouth.min(eye).min(nose)).min(6.0);
-    face.min(3.0 + 0.15 * ear).min(9.0)
+    face.min(2.4 + 0.15 * ear).min(9.0)
 }
 
 /// Builds the half template around `fixed` points and `lines` through them.

@@ -105,11 +105,14 @@ fn cavity() -> Part {
         let turn = std::f32::consts::TAU * u;
         let depth = v * std::f32::consts::FRAC_PI_2;
         let radius = depth.sin().powf(0.7);
-        let half = vec2(29.0 - 3.0 * v, if turn.sin() > 0.0 { 19.0 } else { 16.0 });
+        let half = vec2(29.0, if turn.sin() > 0.0 { 21.5 } else { 20.5 });
+        let (x, y) = (half.x * radius * turn.cos(), half.y * radius * turn.sin());
+        // The rim comes forward past the lips' inner side, so that no look past the corner escapes.
+        let bow = 13.0 * v * (x / 29.0).powi(2);
         vec3(
-            half.x * radius * turn.cos(),
-            -33.0 + half.y * radius * turn.sin(),
-            22.0 + 74.0 * (1.0 - depth.cos()).powf(0.8) - 16.0 * v * (turn.cos() * radius).powi(2),
+            x,
+            -33.5 + y,
+            22.0 + 83.0 * (1.0 - depth.cos()).powf(0.8) - bow,
         )
     });
     let weight = mesh

@@ -86,10 +86,33 @@ pub(super) fn build(
     }
     half.triangles.extend(&template.triangles);
 
+    smooth_ear(&mut half);
     line_mouth(&mut half, &mut upper, &mut lower, surface);
     line_lids(&mut half, &mut lid_loops, surface, eyes);
     line_nostril(&mut half, &nostril, surface);
-    Ok(assemble(&half, &upper, &lower, eyes, &lid_loops))
+    Ok(assemble(&half, &upper, &lower, surface, eyes, &lid_loops))
+}
+
+/// Evens out the ear: the chart sees its rim and folds edge on, where one step of the surface map
+/// jumps by centimetres.
+fn smooth_ear(half: &mut Half) {
+    const ROUNDS: usize = 3;
+    let near = |p: Vec3| p.x > 62.0 && (-28.0..44.0).contains(&p.y) && (-30.0..24.0).contains(&p.z);
+    for _ in 0..ROUNDS {
+        let mut sum = vec![(Vec3::ZERO, 0.0_f32); half.vertices.len()];
+        for t in &half.triangles {
+            for i in 0..3 {
+                let (a, b) = (t[i], t[(i + 1) % 3]);
+                sum[a].0 += half.vertices[b].position;
+                sum[a].1 += 1.0;
+            }
+        }
+        for (v, (total, count)) in half.vertices.iter_mut().zip(sum) {
+            if near(v.position) && count > 0.0 {
+                v.position = v.position.lerp(total / count, 0.5);
+            }
+        }
+    }
 }
 
 /// Places both lips' columns and the slit between them.
@@ -271,6 +294,7 @@ fn assemble(
     half: &Half,
     upper: &LipRows,
     lower: &LipRows,
+    surface: &Surface,
     eyes: &Eyes,
     lid_loops: &[Vec<usize>; 2],
 ) -> (Skin, Lips, Vec<Lid>) {
@@ -299,9 +323,9 @@ fn assemble(
             .iter()
             .map(|&[a, b, c]| [mirror[a], mirror[c], mirror[b]]),
     );
-    crown::close(&mut vertices, &mut triangles);
+    crown::close(&mut vertices, &mut triangles, surface);
 
-    let positions: Vec<Vec3> = vertices.iter().map(|v| v.position).collect();
+    let mut positions: Vec<Vec3> = vertices.iter().map(|v| v.position).collect();
     let triangles: Vec<[u32; 3]> = triangles
         .iter()
         .map(|t| t.map(|i| i as u32))
@@ -339,6 +363,7 @@ fn assemble(
         })
         .collect();
     lids.extend(right);
+    eyes.relax(&mut positions, &mut lids);
     let skin = Skin {
         weight: positions
             .iter()
