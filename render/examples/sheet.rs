@@ -1,42 +1,73 @@
 //! Draws the reference head from all sides and with its mouth open, and measures what a picture
-//! costs: `cargo run --release -p mouthpiece-render --example sheet -- OUT_FOLDER [WxH]`.
+//! costs: `cargo run --release -p mouthpiece-render --example sheet -- OUT_FOLDER [WxH] [TIER]`.
 
 use std::error::Error;
 use std::fs::File;
 use std::io::BufWriter;
 use std::path::Path;
+use std::sync::Arc;
 use std::time::Instant;
 
 use mouthpiece_render::{Background, Camera, Gpu, Offscreen, Tier, View};
-use mouthpiece_rig::{Head, KeyFrame};
+use mouthpiece_rig::{Articulation, Calibration, Control, Head, KeyFrame, STEP_TICKS, Simulation, TICK_RATE};
+
+/// Pictures of the sheet: name, where from, jaw (rad) and lip aperture (mm), width, protrusion (mm), lids, gaze and turn.
+const POSES: &[(&str, Camera, [f32; 4], [f32; 3])] = &[
+    ("front", Camera::Front, [0.0, 0.0, 1.0, 0.0], [0.0, 0.0, 0.0]),
+    ("side", Camera::Side, [0.0, 0.0, 1.0, 0.0], [0.0, 0.0, 0.0]),
+    ("34", Camera::ThreeQuarter, [0.0, 0.0, 1.0, 0.0], [0.0, 0.0, 0.0]),
+    ("ah", Camera::Front, [0.20, 12.0, 1.0, 0.0], [0.0, 0.0, 0.0]),
+    ("ee", Camera::Front, [0.06, 5.0, 1.10, 0.0], [0.3, 0.15, 0.15]),
+    ("oo", Camera::ThreeQuarter, [0.06, 4.0, 0.85, 4.0], [0.6, -0.2, -0.3]),
+];
 
 fn main() -> Result<(), Box<dyn Error>> {
     let mut args = std::env::args().skip(1);
     let folder = args.next().unwrap_or_else(|| "target/sheet".into());
     let size = args.next().unwrap_or_else(|| "640x480".into());
+    let tier: Tier = args.next().unwrap_or_else(|| "medium".into()).parse()?;
     let (width, height) = size.split_once('x').ok_or("give the size as WxH")?;
     let size: (u32, u32) = (width.parse()?, height.parse()?);
     std::fs::create_dir_all(&folder)?;
-    let head = Head::reference()?;
-    let rest = head.rest_frame();
+    let head = Arc::new(Head::reference()?);
 
     let started = Instant::now();
     let gpu = Gpu::headless()?;
     println!("{} ({:?})", gpu.info().name, gpu.info().device_type);
     println!("adapter open after {:.0} ms", started.elapsed().as_secs_f64() * 1e3);
-    println!("| tier | {} x {} | ready ms | first ms | median ms | batch ms |", size.0, size.1);
-    for tier in Tier::ALL {
-        measure(&gpu, &head, &rest, size, tier)?;
+    let mut offscreen = Offscreen::new(&gpu, &head, size, tier)?;
+    for (name, camera, mouth, rest) in POSES {
+        let view = View { camera: *camera, ..View::default() };
+        save(&folder, name, size, offscreen.render(&posed(&head, *mouth, *rest)?, &view)?)?;
     }
+    let flash = View { background: Background::Plain([200, 205, 210]), flash: true, ..View::default() };
+    save(&folder, "flash", size, offscreen.render(&head.rest_frame(), &flash)?)?;
+    drop(offscreen);
 
-    let mut offscreen = Offscreen::new(&gpu, &head, size, Tier::Medium)?;
-    for (name, camera) in [("front", Camera::Front), ("side", Camera::Side), ("34", Camera::ThreeQuarter)] {
-        let view = View { camera, ..View::default() };
-        save(&folder, name, size, offscreen.render(&rest, &view)?)?;
+    println!("| tier | {} x {} | ready ms | first ms | median ms | batch ms |", size.0, size.1);
+    let open = posed(&head, POSES[3].2, POSES[3].3)?;
+    for tier in Tier::ALL {
+        measure(&gpu, &head, &open, size, tier)?;
     }
-    let plain = View { background: Background::Plain([200, 205, 210]), flash: true, ..View::default() };
-    save(&folder, "flash", size, offscreen.render(&rest, &plain)?)?;
     Ok(())
+}
+
+/// The head after half a second of holding a posture.
+fn posed(head: &Arc<Head>, mouth: [f32; 4], rest: [f32; 3]) -> Result<KeyFrame, Box<dyn Error>> {
+    let [jaw_rad, aperture_mm, width, protrusion_mm] = mouth;
+    let articulation = Articulation { jaw_rad, aperture_mm, width, protrusion_mm, ..Articulation::REST };
+    let mut controls = Calibration::reference()?.controls(&articulation);
+    controls[Control::LidL] = rest[0];
+    controls[Control::LidR] = rest[0];
+    controls[Control::GazeYaw] = rest[1];
+    controls[Control::HeadYaw] = rest[2];
+    let mut simulation = Simulation::new(Arc::clone(head));
+    for _ in 0..TICK_RATE / 2 / STEP_TICKS {
+        simulation.step(&controls);
+    }
+    let mut frame = KeyFrame::default();
+    simulation.save(&mut frame);
+    Ok(frame)
 }
 
 fn measure(gpu: &Gpu, head: &Head, frame: &KeyFrame, size: (u32, u32), tier: Tier) -> Result<(), Box<dyn Error>> {

@@ -4,7 +4,7 @@
 //! Asks for nothing beyond WebGPU's downlevel limits, so that any Vulkan, Metal, DX12 or GL driver
 //! of the last ten years will do. Knows nothing of heads.
 
-use std::sync::Arc;
+use std::sync::{Arc, Mutex};
 use std::sync::atomic::{AtomicBool, Ordering};
 
 use thiserror::Error;
@@ -58,6 +58,7 @@ pub struct Gpu {
     queue: wgpu::Queue,
     info: wgpu::AdapterInfo,
     lost: Arc<AtomicBool>,
+    refused: Arc<Mutex<Option<String>>>,
 }
 
 impl Gpu {
@@ -129,8 +130,13 @@ impl Gpu {
                 flag.store(true, Ordering::Release);
             }
         });
-        device.on_uncaptured_error(Arc::new(|error: wgpu::Error| {
+        let refused = Arc::new(Mutex::new(None));
+        let first = Arc::clone(&refused);
+        device.on_uncaptured_error(Arc::new(move |error: wgpu::Error| {
             tracing::error!(%error, "the graphics device refused a command");
+            if let Ok(mut first) = first.lock() {
+                first.get_or_insert_with(|| error.to_string());
+            }
         }));
         Ok(Self {
             instance: instance.clone(),
@@ -139,6 +145,7 @@ impl Gpu {
             queue,
             info,
             lost,
+            refused,
         })
     }
 
@@ -158,6 +165,12 @@ impl Gpu {
     #[must_use]
     pub fn is_lost(&self) -> bool {
         self.lost.load(Ordering::Acquire)
+    }
+
+    /// The first command that the device refused since this was last asked. None is what should be;
+    /// one is a mistake of ours, or of the driver.
+    pub(crate) fn take_refused(&self) -> Option<String> {
+        self.refused.lock().ok()?.take()
     }
 
     /// The instance the adapter came from.

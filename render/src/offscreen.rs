@@ -16,8 +16,8 @@ use crate::view::{Extent, View};
 
 /// Pictures that can be in flight: one being drawn, one being read. More only adds memory.
 pub const FRAMES_IN_FLIGHT: usize = 2;
-/// The encoding of the pixels that come back.
-const FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Rgba8UnormSrgb;
+/// Plain bytes: the shaders' film curve ends in sRGB values.
+const FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Rgba8Unorm;
 /// A picture that takes longer than this will never come.
 const PATIENCE: Duration = Duration::from_secs(60);
 
@@ -167,6 +167,9 @@ impl Offscreen {
             return Ok(None);
         };
         let failed = |what: &dyn std::fmt::Display| RenderError::Readback(what.to_string());
+        if let Some(refused) = self.gpu.take_refused() {
+            return Err(RenderError::Refused(refused));
+        }
         let waited = self.gpu.device().poll(wgpu::PollType::Wait {
             submission_index: Some(pending.submission),
             timeout: Some(PATIENCE),

@@ -36,6 +36,8 @@ impl Layouts {
         };
         let map = texture(wgpu::TextureSampleType::Float { filterable: true });
         let fragment = wgpu::ShaderStages::FRAGMENT;
+        // Coarse surfaces read the shadow at their vertices.
+        let both = wgpu::ShaderStages::VERTEX_FRAGMENT;
         Self {
             frame: layout(
                 "frame",
@@ -52,10 +54,10 @@ impl Layouts {
             shadow: layout(
                 "shadow",
                 &[
-                    entry(0, fragment, texture(wgpu::TextureSampleType::Depth)),
+                    entry(0, both, texture(wgpu::TextureSampleType::Depth)),
                     entry(
                         1,
-                        fragment,
+                        both,
                         wgpu::BindingType::Sampler(wgpu::SamplerBindingType::Comparison),
                     ),
                 ],
@@ -101,7 +103,7 @@ struct Recipe {
 const fn solid(file: &'static str) -> Recipe {
     Recipe {
         file,
-        vertex: "part",
+        vertex: "mouth_vertex",
         fragment: Some(file),
         mesh: Mesh::Part,
         both_sides: false,
@@ -120,9 +122,13 @@ const HAIR: Recipe = Recipe {
     strands: true,
     ..solid("hair")
 };
+const EYE: Recipe = Recipe {
+    vertex: "eye_vertex",
+    ..solid("eye")
+};
 const LASH: Recipe = Recipe {
+    vertex: "lash_vertex",
     both_sides: true,
-    strands: true,
     ..solid("lash")
 };
 const CAVITY: Recipe = Recipe {
@@ -130,6 +136,7 @@ const CAVITY: Recipe = Recipe {
     ..solid("cavity")
 };
 const CLOTH: Recipe = Recipe {
+    vertex: "cloth_vertex",
     both_sides: true,
     ..solid("cloth")
 };
@@ -203,7 +210,7 @@ impl Pipelines {
         };
         Ok(Self {
             skin: make(&SKIN, &mapped)?,
-            eye: make(&solid("eye"), &mapped)?,
+            eye: make(&EYE, &mapped)?,
             teeth: make(&solid("teeth"), &lit)?,
             gums: make(&solid("gums"), &lit)?,
             tongue: make(&solid("tongue"), &lit)?,
@@ -233,7 +240,7 @@ fn pipeline(
         source: wgpu::ShaderSource::Wgsl(text.as_str().into()),
     });
     let all = [
-        ("ENCODE_SRGB", f64::from(u8::from(!format.is_srgb()))),
+        ("DECODE_SRGB", f64::from(u8::from(format.is_srgb()))),
         ("SHADOW_TAPS", f64::from(detail.shadow_taps)),
         ("HAIR_LAYERS", f64::from(detail.hair_shells)),
         ("SAMPLES", f64::from(samples)),

@@ -15,7 +15,7 @@ use crate::studio::{Lamp, Studio};
 use crate::targets::{DEPTH, Targets, texture};
 use crate::tier::{Detail, Tier};
 use crate::upload;
-use crate::view::{Background, Extent, View, linear};
+use crate::view::{Background, Extent, View, srgb};
 
 /// Why a picture could not be drawn.
 #[derive(Debug, Error)]
@@ -41,6 +41,9 @@ pub enum RenderError {
     /// A shader file is broken.
     #[error(transparent)]
     Shader(#[from] ShaderError),
+    /// The driver does not take our shaders or buffers.
+    #[error("the graphics driver refused to draw this: {0}; update the driver or choose another adapter with WGPU_ADAPTER_NAME")]
+    Refused(String),
     /// The driver was reset or the card is gone.
     #[error("the graphics device was lost: open it again")]
     DeviceLost,
@@ -62,6 +65,9 @@ struct PartBuffers {
 
 /// Share of the picture's height that the flash square takes.
 const FLASH_SHARE: f32 = 0.25;
+
+/// Two triangles a cell. Keep in step with shaders/background.wgsl.
+const BACKDROP_VERTICES: u32 = 16 * 12 * 6;
 
 /// The head on the card, ready to be drawn in one target format.
 #[derive(Debug)]
@@ -153,7 +159,7 @@ impl Renderer {
             label: Some("maps"),
             mag_filter: wgpu::FilterMode::Linear,
             min_filter: wgpu::FilterMode::Linear,
-            mipmap_filter: wgpu::MipmapFilterMode::Linear,
+            mipmap_filter: if detail.anisotropy > 1 { wgpu::MipmapFilterMode::Linear } else { wgpu::MipmapFilterMode::Nearest },
             anisotropy_clamp: detail.anisotropy,
             ..Default::default()
         });
@@ -171,6 +177,9 @@ impl Renderer {
         pose.skin = Skin::default();
         pose.parts.clear();
         pose.features.clear();
+        if let Some(refused) = gpu.take_refused() {
+            return Err(RenderError::Refused(refused));
+        }
         Ok(Self {
             pose,
             extent: Extent::of(head),
@@ -271,8 +280,8 @@ impl Renderer {
         let direction = |lamp: &Lamp| lamp.direction.extend(lamp.half_angle).to_array();
         let colour = |lamp: &Lamp| lamp.colour.extend(0.0).to_array();
         let (middle, corner) = match view.background {
-            Background::Plain(c) => (linear(c), linear(c)),
-            Background::Studio(c) => (linear(c) * 1.25, linear(c) * 0.34),
+            Background::Plain(c) => (srgb(c), srgb(c)),
+            Background::Studio(c) => (srgb(c) * 1.10, srgb(c) * 0.58),
         };
         let (width, height) = (size.0 as f32, size.1 as f32);
         Frame {
@@ -344,7 +353,7 @@ impl Renderer {
             self.draw_material(&mut pass, *material, buffers);
         }
         pass.set_pipeline(&self.pipelines.backdrop);
-        pass.draw(0..3, 0..1);
+        pass.draw(0..BACKDROP_VERTICES, 0..1);
         if view.flash {
             pass.set_pipeline(&self.pipelines.flash);
             pass.draw(0..6, 0..1);

@@ -111,6 +111,29 @@ mod tests {
     }
 
     #[test]
+    fn every_entry_point_is_valid_with_its_constants_filled_in() {
+        for name in ENTRY_FILES {
+            let text = resolve(name).unwrap();
+            let module = naga::front::wgsl::parse_str(&text).unwrap();
+            let info = naga::valid::Validator::new(
+                naga::valid::ValidationFlags::all(),
+                naga::valid::Capabilities::empty(),
+            )
+            .validate(&module)
+            .unwrap();
+            for taps in [1.0, 4.0, 9.0] {
+                let constants: naga::back::PipelineConstants =
+                    [("SHADOW_TAPS".to_owned(), taps)].into_iter().filter(|(n, _)| text.contains(n)).collect();
+                for entry in &module.entry_points {
+                    let stage = Some((entry.stage, entry.name.as_str()));
+                    naga::back::pipeline_constants::process_overrides(&module, &info, stage, &constants)
+                        .unwrap_or_else(|e| panic!("{name}, {}: {e:?}", entry.name));
+                }
+            }
+        }
+    }
+
+    #[test]
     fn every_file_is_used() {
         let mut used: HashSet<String> = HashSet::new();
         for name in ENTRY_FILES {

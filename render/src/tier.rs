@@ -79,17 +79,17 @@ impl Tier {
                 shadow_map: 512,
                 shadow_taps: 1,
                 anisotropy: 1,
-                hair_shells: 2,
+                hair_shells: 1,
             },
             Self::Medium => Detail {
                 samples: 4,
                 map_width: 2048,
                 eye_map: 512,
                 hair_map: 1024,
-                shadow_map: 1024,
+                shadow_map: 768,
                 shadow_taps: 4,
                 anisotropy: 1,
-                hair_shells: 4,
+                hair_shells: 2,
             },
             Self::High => Detail {
                 samples: 4,
@@ -99,7 +99,7 @@ impl Tier {
                 shadow_map: 2048,
                 shadow_taps: 9,
                 anisotropy: 8,
-                hair_shells: 10,
+                hair_shells: 6,
             },
         }
     }

@@ -207,15 +207,7 @@ impl Extent {
     }
 }
 
-/// An sRGB byte colour as linear light, 0..1.
-pub(crate) fn linear(srgb: [u8; 3]) -> Vec3 {
-    let one = |byte: u8| {
-        let value = f32::from(byte) / 255.0;
-        if value <= 0.040_45 {
-            value / 12.92
-        } else {
-            ((value + 0.055) / 1.055).powf(2.4)
-        }
-    };
-    vec3(one(srgb[0]), one(srgb[1]), one(srgb[2]))
+/// An sRGB byte colour as shares of 1.
+pub(crate) fn srgb(colour: [u8; 3]) -> Vec3 {
+    Vec3::from(colour.map(|byte| f32::from(byte) / 255.0))
 }

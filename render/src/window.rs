@@ -146,7 +146,7 @@ impl WindowTarget {
     }
 }
 
-/// The surface's best settings: an sRGB format if there is one, in step with the screen, no queue of
+/// The surface's best settings: plain bytes (the shaders give sRGB values) if they are offered, in step with the screen, no queue of
 /// old pictures.
 fn configuration(gpu: &Gpu, surface: &wgpu::Surface<'_>) -> Result<wgpu::SurfaceConfiguration, GpuError> {
     let unsupported = || GpuError::UnsupportedSurface {
@@ -161,7 +161,7 @@ fn configuration(gpu: &Gpu, surface: &wgpu::Surface<'_>) -> Result<wgpu::Surface
     config.format = formats
         .iter()
         .copied()
-        .find(|f| eight_bit(f) && f.is_srgb())
+        .find(|f| eight_bit(f) && !f.is_srgb())
         .or_else(|| formats.iter().copied().find(eight_bit))
         .ok_or_else(unsupported)?;
     config.present_mode = wgpu::PresentMode::AutoVsync;

@@ -1,24 +1,36 @@
-// The backdrop: a lit wall, or one colour, behind everything.
+// The backdrop: a lit wall, or one colour, behind everything. A grid of cells, coloured at its corners:
+// the wall changes slowly, and most of a picture is wall.
 
 #include "frame"
 
-@vertex
-fn backdrop_vertex(@builtin(vertex_index) index: u32) -> @builtin(position) vec4<f32> {
-    // One triangle over the whole picture, at the far end of depth.
-    let corner = vec2(f32(index & 1u), f32(index >> 1u)) * 4.0 - 1.0;
-    return vec4(corner, 1.0, 1.0);
+struct WallFragment {
+    @builtin(position) clip: vec4<f32>,
+    @location(0) colour: vec3<f32>,
 }
 
-// Fixed grain of half a step, so that the slow gradient does not band once it has 8 bits.
-fn dither(pixel: vec2<f32>) -> f32 {
-    let m = fract(52.9829189 * fract(dot(floor(pixel), vec2(0.06711056, 0.00583715))));
-    return (m - 0.5) / 255.0;
+// Cells across and down. Keep in step with renderer.rs.
+const CELLS: vec2<u32> = vec2(16u, 12u);
+
+@vertex
+fn backdrop_vertex(@builtin(vertex_index) index: u32) -> WallFragment {
+    let cell = index / 6u;
+    // Two triangles: corners 0 1 2 and 1 2 3.
+    let i = index % 6u;
+    let k = select(i, i - 2u, i > 2u);
+    let corner = vec2(cell % CELLS.x + (k & 1u), cell / CELLS.x + (k >> 1u));
+    let at = vec2<f32>(corner) / vec2<f32>(CELLS);
+    let p = (at - vec2(0.5, 0.45)) * vec2(min(frame.backdrop[0].w, 1.6), 1.0);
+    var out: WallFragment;
+    out.clip = vec4(at * vec2(2.0, -2.0) + vec2(-1.0, 1.0), 1.0, 1.0);
+    out.colour = mix(frame.backdrop[0].rgb, frame.backdrop[1].rgb, smoothstep(0.05, 0.95, length(p)));
+    return out;
 }
 
 @fragment
-fn backdrop(@builtin(position) at: vec4<f32>) -> @location(0) vec4<f32> {
-    let p = (at.xy / frame.picture.xy - vec2(0.5, 0.45)) * vec2(min(frame.backdrop[0].w, 1.6), 1.0);
-    let share = smoothstep(0.05, 0.95, length(p));
-    let colour = mix(frame.backdrop[0].rgb, frame.backdrop[1].rgb, share);
-    return encoded(max(colour + dither(at.xy) * colour * 3.0, vec3(0.0)));
+fn backdrop(in: WallFragment) -> @location(0) vec4<f32> {
+    // Fixed grain of a step, so that the slow gradient does not band once it has 8 bits.
+    let q = vec2<u32>(in.clip.xy);
+    let grain = f32(((q.x * 1597u) ^ (q.y * 5167u)) * 2654435761u >> 24u) / 255.0 - 0.5;
+    let varies = any(frame.backdrop[0].rgb != frame.backdrop[1].rgb);
+    return shown(in.colour + select(0.0, grain / 255.0, varies));
 }

@@ -1,14 +1,27 @@
-// Cloth: matte, with the pale edge that fibres standing off it make.
+// Cloth: matte, with the pale edge that fibres standing off it make. Lit at its vertices.
 
 #include "part"
 #include "light"
 
-@fragment
-fn cloth(in: PartFragment) -> @location(0) vec4<f32> {
-    let n = normalize(in.normal);
-    let v = normalize(frame.eye.xyz - in.world);
+struct ClothFragment {
+    @builtin(position) clip: vec4<f32>,
+    @location(0) light: vec3<f32>,
+}
+
+@vertex
+fn cloth_vertex(in: PartVertex) -> ClothFragment {
+    let at = placed(in, 0.0);
+    let n = normalize(at.normal);
+    let v = normalize(frame.eye.xyz - at.world);
     let albedo = vec3(0.043, 0.052, 0.068);
-    let fuzz = grazing(dot(n, v)) * 0.35;
-    let light = plain(albedo, n, in.world, in.head.w, 0.9, 0.01);
-    return developed(light + albedo * fuzz * ambient_from(n));
+    let fuzz = albedo * ambient_from(n) * (grazing(dot(n, v)) * 0.5);
+    var out: ClothFragment;
+    out.clip = frame.clip_from_world * vec4(at.world, 1.0);
+    out.light = matte(albedo, n, at.world, in.shares.x) + fuzz;
+    return out;
+}
+
+@fragment
+fn cloth(in: ClothFragment) -> @location(0) vec4<f32> {
+    return developed(in.light);
 }

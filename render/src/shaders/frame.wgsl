@@ -28,7 +28,7 @@ struct Frame {
     // Lid margins over the ball in units of its radius: y = x + y*X + z*X^2. Left upper, left lower,
     // right upper, right lower; w of the upper ones: how far the lids are open, 0..1.
     lids: array<vec4<f32>, 4>,
-    // Backdrop in the middle and in the corners, linear; w of the first: width over height.
+    // Backdrop in the middle and in the corners, sRGB; w of the first: width over height.
     backdrop: array<vec4<f32>, 2>,
     // Size of the picture in pixels, share of its height that the flash square takes, unused.
     picture: vec4<f32>,
@@ -36,36 +36,29 @@ struct Frame {
 
 @group(0) @binding(0) var<uniform> frame: Frame;
 
-// 1 where the target does not encode sRGB by itself.
-override ENCODE_SRGB: bool = false;
+// True where the target encodes sRGB by itself: then what is given to it must be decoded first.
+override DECODE_SRGB: bool = false;
 
 const PI: f32 = 3.14159265;
 
-fn saturate3(v: vec3<f32>) -> vec3<f32> {
-    return clamp(v, vec3(0.0), vec3(1.0));
-}
-
-// A film's response (Narkowicz's fit of the ACES curve): a toe, a straight middle, a shoulder.
+// A film's response with sRGB's curve in it (Hejl and Burgess-Dawson's fit): toe, straight middle,
+// shoulder, ready to be shown. One division instead of powers: software rendering feels it.
 fn filmic(light: vec3<f32>) -> vec3<f32> {
-    let x = light * frame.eye.w;
-    return saturate3((x * (2.51 * x + 0.03)) / (x * (2.43 * x + 0.59) + 0.14));
+    let x = max(light * frame.eye.w - 0.004, vec3(0.0));
+    return (x * (6.2 * x + 0.5)) / (x * (6.2 * x + 1.7) + 0.06);
 }
 
-fn srgb(linear: vec3<f32>) -> vec3<f32> {
-    let low = linear * 12.92;
-    let high = 1.055 * pow(max(linear, vec3(1e-6)), vec3(1.0 / 2.4)) - 0.055;
-    return select(high, low, linear <= vec3(0.0031308));
-}
-
-// Linear light as the target wants it.
-fn encoded(linear: vec3<f32>) -> vec4<f32> {
-    if ENCODE_SRGB {
-        return vec4(srgb(linear), 1.0);
+// An sRGB value as the target wants it.
+fn shown(srgb: vec3<f32>) -> vec4<f32> {
+    if DECODE_SRGB {
+        let low = srgb / 12.92;
+        let high = pow((srgb + 0.055) / 1.055, vec3(2.4));
+        return vec4(select(high, low, srgb <= vec3(0.04045)), 1.0);
     }
-    return vec4(linear, 1.0);
+    return vec4(srgb, 1.0);
 }
 
 // Light as a finished pixel.
 fn developed(light: vec3<f32>) -> vec4<f32> {
-    return encoded(filmic(light));
+    return shown(filmic(light));
 }

@@ -1,5 +1,6 @@
 // Short hair: layers over the cap, each showing only the strands that reach so high; along the strand
-// the highlight of Kajiya and Kay, shifted twice (Marschner's two lobes, in little).
+// the highlight of Kajiya and Kay, shifted twice (Marschner's two lobes, in little). Lit at the
+// vertices; the map gives each strand its own share of that.
 // The map is laid flat round the crown; strands run away from it. R tone, G height, B shift.
 
 #include "part"
@@ -17,13 +18,14 @@ const TIP: f32 = 3.0;
 // Where the strands part from. Keep in step with maps/hair.rs.
 const CROWN: vec3<f32> = vec3(0.0, 145.0, -35.0);
 
-@vertex
-fn hair_vertex(in: PartVertex, @builtin(instance_index) layer: u32) -> PartFragment {
-    let height = f32(layer) / max(HAIR_LAYERS - 1.0, 1.0);
-    // At its edge the hair lies flat on the skin.
-    var out = part_vertex(in, mix(ROOT, TIP, height) * in.shares.z);
-    out.layer.x = height;
-    return out;
+struct HairFragment {
+    @builtin(position) clip: vec4<f32>,
+    @location(0) uv: vec2<f32>,
+    // Height of the layer among the layers, distance from the hairline.
+    @location(1) layer: vec2<f32>,
+    // Light that the strands' colour multiplies, and light they mirror.
+    @location(2) body: vec3<f32>,
+    @location(3) shine: vec3<f32>,
 }
 
 fn strand_lobe(t: vec3<f32>, h: vec3<f32>, sharp: f32) -> f32 {
@@ -31,8 +33,39 @@ fn strand_lobe(t: vec3<f32>, h: vec3<f32>, sharp: f32) -> f32 {
     return pow(max(1.0 - along * along, 0.0), sharp);
 }
 
+@vertex
+fn hair_vertex(in: PartVertex, @builtin(instance_index) layer: u32) -> HairFragment {
+    let height = f32(layer) / max(HAIR_LAYERS - 1.0, 1.0);
+    // At its edge the hair lies flat on the skin.
+    let at = placed(in, mix(ROOT, TIP, height) * in.shares.z);
+    let n = normalize(at.normal);
+    let v = normalize(frame.eye.xyz - at.world);
+    // Strands lie along the surface, away from the crown, and stand off it a little.
+    let away = (vec4(in_head(at.world) - CROWN, 0.0) * frame.head_from_world).xyz;
+    let flat_t = normalize(away - n * dot(away, n) + vec3(0.0, -1e-3, 0.0));
+    let t = normalize(flat_t + n * 0.15);
+    let l = frame.key_dir.xyz;
+    let h = normalize(l + v);
+    let facing = clamp(dot(n, l) * 0.7 + 0.3, 0.0, 1.0);
+    let along = dot(t, l);
+    let depth = mix(0.5, 1.0, height) * mix(in.shares.x, 1.0, 0.25);
+    let key = frame.key_colour.rgb * key_visible(shadow_place(at.world, n));
+    let rim_h = normalize(frame.rim_dir.xyz + v);
+    let rim = frame.rim_colour.rgb * (max(dot(n, frame.rim_dir.xyz) + 0.2, 0.0) * depth);
+
+    var out: HairFragment;
+    out.clip = frame.clip_from_world * vec4(at.world, 1.0);
+    out.uv = in.uv;
+    out.layer = vec2(height, in.shares.z);
+    out.body = (key * facing * (sqrt(max(1.0 - along * along, 0.0)) + 1.4 * strand_lobe(normalize(t - n * 0.25), h, 14.0))
+        + frame.fill_colour.rgb * max(dot(n, frame.fill_dir.xyz) * 0.5 + 0.5, 0.0)
+        + ambient_from(n)) * depth + rim * 0.6;
+    out.shine = key * (0.050 * strand_lobe(t, h, 40.0) * facing * depth) + rim * (0.05 * strand_lobe(t, rim_h, 24.0));
+    return out;
+}
+
 @fragment
-fn hair(in: PartFragment) -> @location(0) vec4<f32> {
+fn hair(in: HairFragment) -> @location(0) vec4<f32> {
     let map = textureSample(hair_map, map_sampler, in.uv);
     let edge = in.layer.y;
     // Thins out towards the hairline and towards the tips.
@@ -43,26 +76,7 @@ fn hair(in: PartFragment) -> @location(0) vec4<f32> {
     if cover < select(0.02, 0.5, SAMPLES == 1u) {
         discard;
     }
-    let n = normalize(in.normal);
-    let v = normalize(frame.eye.xyz - in.world);
-    // Away from the crown, in the surface; the map bends it.
-    let away = in.head.xyz - CROWN;
-    let flow = (vec4(away, 0.0) * frame.head_from_world).xyz;
-    var t = normalize(flow - n * dot(flow, n));
-    t = normalize(t + n * ((map.b - 0.5) * 0.5 + 0.1) + cross(n, t) * (map.r - 0.5) * 0.35);
-    let l = frame.key_dir.xyz;
-    let h = normalize(l + v);
-    let facing = clamp(dot(n, l) * 0.7 + 0.3, 0.0, 1.0);
-    let along = dot(t, l);
-    let matte = sqrt(max(1.0 - along * along, 0.0)) * facing;
-    let visible = key_visible(in.world, n);
-    let base = vec3(0.043, 0.026, 0.017) * (0.45 + 1.1 * map.r);
-    let depth = mix(0.45, 1.0, in.layer.x) * in.head.w;
-    let key = frame.key_colour.rgb * visible;
-    var light = base * key * matte * depth;
-    light += key * (0.045 * strand_lobe(t, h, 60.0) * map.r + base * 1.4 * strand_lobe(normalize(t - n * 0.22), h, 16.0)) * (facing * depth);
-    let rim = normalize(frame.rim_dir.xyz + v);
-    light += frame.rim_colour.rgb * (0.05 * strand_lobe(t, rim, 24.0) + base * 0.5) * max(dot(n, frame.rim_dir.xyz) + 0.2, 0.0) * depth;
-    light += base * (frame.fill_colour.rgb * max(dot(n, frame.fill_dir.xyz) * 0.5 + 0.5, 0.0) + ambient_from(n)) * depth;
+    let base = vec3(0.043, 0.026, 0.017) * (0.40 + 1.2 * map.r);
+    let light = base * in.body + in.shine * (map.r * (0.5 + map.b));
     return vec4(developed(light).rgb, cover);
 }

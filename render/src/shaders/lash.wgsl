@@ -1,12 +1,25 @@
-// Lashes: nearly black, lit from both sides. uv.y runs from root to tip.
+// Lashes: nearly black, lit from both sides. Lit at their vertices.
 
 #include "part"
 #include "light"
 
-@fragment
-fn lash(in: PartFragment, @builtin(front_facing) front: bool) -> @location(0) vec4<f32> {
-    let n = normalize(select(-in.normal, in.normal, front));
+struct LashFragment {
+    @builtin(position) clip: vec4<f32>,
+    @location(0) light: vec3<f32>,
+}
+
+@vertex
+fn lash_vertex(in: PartVertex) -> LashFragment {
+    let at = placed(in, 0.0);
+    let n = normalize(at.normal);
     let albedo = vec3(0.018, 0.013, 0.011);
-    let light = albedo * (ambient_from(n) + 0.6 * frame.key_colour.rgb * max(dot(n, frame.key_dir.xyz), 0.0));
-    return vec4(developed(light).rgb, 1.0);
+    var out: LashFragment;
+    out.clip = frame.clip_from_world * vec4(at.world, 1.0);
+    out.light = albedo * (ambient_from(n) + 0.5 * frame.key_colour.rgb * abs(dot(n, frame.key_dir.xyz)));
+    return out;
+}
+
+@fragment
+fn lash(in: LashFragment) -> @location(0) vec4<f32> {
+    return developed(in.light);
 }

@@ -1,41 +1,57 @@
 // The studio: key with a shadow, fill, rim, ambient; and the pieces of the reflection models.
+// What changes slowly over a surface is worked out at its vertices, the rest at its pixels.
 
 #include "frame"
 
 @group(1) @binding(0) var shadow_map: texture_depth_2d;
 @group(1) @binding(1) var shadow_sampler: sampler_comparison;
 
-// Reads of the shadow map a pixel: 1, 4 or 9.
+// Reads of the shadow map: 1, 4 or 9.
 override SHADOW_TAPS: u32 = 4u;
 
-// Share of the key light that reaches a world position. The place is moved off the surface, so that
-// it does not shade itself.
-fn key_visible(world: vec3<f32>, normal: vec3<f32>) -> f32 {
+// A world position in the shadow map: its place there and its depth. It is moved off the surface, so
+// that the surface does not shade itself.
+fn shadow_place(world: vec3<f32>, normal: vec3<f32>) -> vec3<f32> {
     let off = world + normal * 2.0 + frame.key_dir.xyz * 1.5;
     let clip = frame.shadow_from_world * vec4(off, 1.0);
-    let uv = clip.xy * vec2(0.5, -0.5) + 0.5;
-    let texel = 1.0 / f32(textureDimensions(shadow_map).x);
-    if SHADOW_TAPS == 1u {
-        return textureSampleCompareLevel(shadow_map, shadow_sampler, uv, clip.z);
-    }
+    return vec3(clip.xy * vec2(0.5, -0.5) + 0.5, clip.z);
+}
+
+fn shadow_read(at: vec2<f32>, depth: f32) -> f32 {
+    return textureSampleCompareLevel(shadow_map, shadow_sampler, at, depth);
+}
+
+// Reach of the shadow's soft edge as a share of the map, so that tiers agree; of a turned square, which
+// is softer than a straight one for the same four reads.
+const SOFT_A: vec2<f32> = vec2(0.00374, 0.00146);
+const SOFT_B: vec2<f32> = vec2(-0.00146, 0.00374);
+const SOFT_STEP: f32 = 0.0042;
+
+fn shadow_of_four(place: vec3<f32>) -> f32 {
+    let sum = shadow_read(place.xy + SOFT_A, place.z) + shadow_read(place.xy - SOFT_A, place.z)
+        + shadow_read(place.xy + SOFT_B, place.z) + shadow_read(place.xy - SOFT_B, place.z);
+    return sum * 0.25;
+}
+
+fn shadow_of_nine(place: vec3<f32>) -> f32 {
     var sum = 0.0;
-    if SHADOW_TAPS == 4u {
-        // A turned square: softer than a straight one for the same four reads.
-        let a = vec2(2.1, 0.8) * texel * 1.4;
-        let b = vec2(-a.y, a.x);
-        sum = textureSampleCompareLevel(shadow_map, shadow_sampler, uv + a, clip.z)
-            + textureSampleCompareLevel(shadow_map, shadow_sampler, uv - a, clip.z)
-            + textureSampleCompareLevel(shadow_map, shadow_sampler, uv + b, clip.z)
-            + textureSampleCompareLevel(shadow_map, shadow_sampler, uv - b, clip.z);
-        return sum * 0.25;
-    }
     for (var i = -1; i <= 1; i++) {
         for (var j = -1; j <= 1; j++) {
-            let at = uv + vec2(f32(i), f32(j)) * texel * 4.0;
-            sum += textureSampleCompareLevel(shadow_map, shadow_sampler, at, clip.z);
+            sum += shadow_read(place.xy + vec2(f32(i), f32(j)) * SOFT_STEP, place.z);
         }
     }
     return sum / 9.0;
+}
+
+// Share of the key light that reaches that place.
+fn key_visible(place: vec3<f32>) -> f32 {
+    if SHADOW_TAPS == 1u {
+        return shadow_read(place.xy, place.z);
+    }
+    if SHADOW_TAPS == 4u {
+        return shadow_of_four(place);
+    }
+    return shadow_of_nine(place);
 }
 
 // Ambient light from around a direction.
@@ -70,14 +86,12 @@ fn grazing(cosine: f32) -> f32 {
     return m2 * m2 * m;
 }
 
-// A plain surface: matte with one glossy lobe. Enough for cloth, gums, lashes.
-fn plain(albedo: vec3<f32>, n: vec3<f32>, world: vec3<f32>, occlusion: f32, roughness: f32, f0: f32) -> vec3<f32> {
-    let v = normalize(frame.eye.xyz - world);
-    let key = frame.key_colour.rgb * key_visible(world, n);
-    var light = albedo * key * max(dot(n, frame.key_dir.xyz), 0.0);
-    light += albedo * frame.fill_colour.rgb * max(dot(n, frame.fill_dir.xyz) * 0.75 + 0.25, 0.0) * occlusion;
-    light += albedo * frame.rim_colour.rgb * max(dot(n, frame.rim_dir.xyz), 0.0);
-    light += albedo * ambient_from(n) * bounced(occlusion, albedo);
-    light += f0 * key * gloss(n, v, frame.key_dir.xyz, roughness);
-    return light;
+// Light that a matte surface sends back, shadow included. For vertices.
+fn matte(albedo: vec3<f32>, n: vec3<f32>, world: vec3<f32>, occlusion: f32) -> vec3<f32> {
+    let key = frame.key_colour.rgb * key_visible(shadow_place(world, n));
+    let light = key * max(dot(n, frame.key_dir.xyz), 0.0)
+        + frame.fill_colour.rgb * max(dot(n, frame.fill_dir.xyz) * 0.75 + 0.25, 0.0) * occlusion
+        + frame.rim_colour.rgb * max(dot(n, frame.rim_dir.xyz), 0.0)
+        + ambient_from(n) * bounced(occlusion, albedo);
+    return albedo * light;
 }

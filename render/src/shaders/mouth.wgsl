@@ -5,6 +5,29 @@
 #include "part"
 #include "light"
 
+struct MouthFragment {
+    @builtin(position) clip: vec4<f32>,
+    @location(0) world: vec3<f32>,
+    @location(1) normal: vec3<f32>,
+    // Position in the head's frame.
+    @location(2) head: vec3<f32>,
+    // Shares of ambient, key and fill light that reach the place; occlusion at rest.
+    @location(3) inside: vec4<f32>,
+}
+
+@vertex
+fn mouth_vertex(in: PartVertex) -> MouthFragment {
+    let at = placed(in, 0.0);
+    var out: MouthFragment;
+    out.world = at.world;
+    out.normal = at.normal;
+    out.clip = frame.clip_from_world * vec4(at.world, 1.0);
+    out.head = in_head(at.world);
+    let light = mouth_light(out.head, head_direction(normalize(at.normal)));
+    out.inside = vec4(light.sky, light.key, light.fill, in.shares.x);
+    return out;
+}
+
 struct MouthLight {
     // Share of ambient light.
     sky: f32,
@@ -40,20 +63,16 @@ fn mouth_light(p: vec3<f32>, n: vec3<f32>) -> MouthLight {
     let leaving = clamp(to.z * inverse, 0.0, 1.0);
     var out: MouthLight;
     out.sky = max(area * leaving * facing / (2.0 * PI * d2 + area), smoothstep(0.5, 3.0, -to.z) * 0.8);
-    out.key = through_lips(p, (frame.head_from_world * vec4(frame.key_dir.xyz, 0.0)).xyz);
-    out.fill = through_lips(p, (frame.head_from_world * vec4(frame.fill_dir.xyz, 0.0)).xyz);
+    out.key = through_lips(p, head_direction(frame.key_dir.xyz));
+    out.fill = through_lips(p, head_direction(frame.fill_dir.xyz));
     return out;
 }
 
-fn head_normal(n: vec3<f32>) -> vec3<f32> {
-    return (frame.head_from_world * vec4(n, 0.0)).xyz;
-}
-
 // A wet surface inside the mouth. `soft` lets light creep round the edge, as enamel and flesh do.
-fn wet_surface(in: PartFragment, n: vec3<f32>, albedo: vec3<f32>, roughness: f32, f0: f32, soft: f32) -> vec3<f32> {
+fn wet_surface(in: MouthFragment, n: vec3<f32>, albedo: vec3<f32>, roughness: f32, f0: f32, soft: f32) -> vec3<f32> {
     let v = normalize(frame.eye.xyz - in.world);
-    let inside = mouth_light(in.head.xyz, head_normal(n));
-    let occlusion = in.head.w;
+    let inside = MouthLight(in.inside.x, in.inside.y, in.inside.z);
+    let occlusion = in.inside.w;
     let wrap = 1.0 / (1.0 + soft);
     let key = frame.key_colour.rgb * inside.key;
     let fill = frame.fill_colour.rgb * inside.fill;

@@ -16,7 +16,5 @@ fn skin_shadow(in: SkinVertex) -> @builtin(position) vec4<f32> {
 
 @vertex
 fn part_shadow(in: PartVertex) -> @builtin(position) vec4<f32> {
-    let v = vec4(in.rest, 1.0);
-    let world = part_world(frame.bodies[in.bodies.x], frame.bodies[in.bodies.y], in.shares.y, v);
-    return frame.shadow_from_world * vec4(world, 1.0);
+    return frame.shadow_from_world * vec4(placed(in, 0.0).world, 1.0);
 }

@@ -4,8 +4,8 @@
 #include "noise"
 
 @fragment
-fn tongue(in: PartFragment) -> @location(0) vec4<f32> {
-    let p = in.head.xyz;
+fn tongue(in: MouthFragment) -> @location(0) vec4<f32> {
+    let p = in.head;
     let grain = vec3(value_noise(p.xz * 1.9), value_noise(p.zx * 1.9 + 17.0), value_noise(p.xz * 0.7 + 5.0)) - 0.5;
     let n = normalize(in.normal + vec3(grain.x, 0.0, grain.y) * 0.5);
     let furrow = 1.0 - 0.25 * exp(-p.x * p.x * 0.35);
