@@ -1,0 +1,29 @@
+//! End-to-end tests: the release build of `mouthpiece`, run as its users run it.
+//!
+//! | module | guards |
+//! |---|---|
+//! | `mouth` | what a viewer sees: lips meet in /p b m/, the mouth opens in open vowels |
+//! | `export` | videos: in step, the same every time, whole or not there |
+//! | `labels` | label files of every sad kind, and the round trip |
+//! | `sound` | sound files of every kind |
+//! | `usage` | exit statuses, help, what doctor and bench print |
+//! | `still` | pictures against golden ones |
+//! | `wire` | the daemon's socket |
+//! | `house` | the style of the source, and licences |
+
+#![forbid(unsafe_code)]
+#![allow(
+    clippy::unwrap_used,
+    clippy::expect_used,
+    reason = "a test that cannot go on has failed, and says where"
+)]
+
+mod export;
+mod graphics;
+mod house;
+mod labels;
+mod mouth;
+mod sound;
+mod still;
+mod usage;
+mod wire;

@@ -1,0 +1,192 @@
+//! What a viewer would notice first: lips that do not meet in /p b m/, a mouth that stays shut in
+//! an open vowel, a face that goes on speaking in a pause.
+//!
+//! Measured by `mouthpiece curves` on the skin as it is drawn, for every utterance in `fixtures/`.
+
+use std::fmt::Write as _;
+
+use mouthpiece_tests::binary;
+use mouthpiece_tests::curves::Table;
+use mouthpiece_tests::fixtures::{self, Label, Utterance};
+
+/// Rows a second: three simulation steps a row, so that no closure slips between two.
+const RATE_HZ: f64 = 200.0;
+/// Lips that are this near count as closed: less than a pixel of the default video.
+const CLOSED_MM: f64 = 0.3;
+/// An open vowel opens the mouth by more than this.
+const OPEN_MM: f64 = 6.0;
+/// Vowels shorter than this may be swallowed, as in speech.
+const OPEN_S_MIN: f64 = 0.08;
+/// From here on a pause is long enough for the mouth to come to rest in it.
+const REST_S_MIN: f64 = 0.3;
+/// A resting mouth is not open wider than this.
+const REST_MM_MAX: f64 = 2.0;
+
+/// Segments that close the lips: the hold, or the whole stop where its hold is not labelled.
+fn closes(labels: &[Label], index: usize) -> bool {
+    let before = index.checked_sub(1).map(|i| labels[i].phone.as_str());
+    match labels[index].phone.as_str() {
+        "pcl" | "bcl" | "m" | "em" => true,
+        "p" => before != Some("pcl"),
+        "b" => before != Some("bcl"),
+        _ => false,
+    }
+}
+
+fn opens(label: &Label) -> bool {
+    let is_open = matches!(label.phone.as_str(), "aa" | "ae" | "ao" | "aw" | "ay");
+    is_open && label.end - label.start >= OPEN_S_MIN
+}
+
+fn rests(label: &Label) -> bool {
+    let is_pause = matches!(label.phone.as_str(), "h#" | "pau" | "epi");
+    is_pause && label.end - label.start >= REST_S_MIN
+}
+
+/// `aperture_mm` over an utterance, and what was measured in each segment.
+struct Mouth {
+    utterance: Utterance,
+    aperture_mm: Vec<f64>,
+}
+
+impl Mouth {
+    fn of(utterance: Utterance) -> Self {
+        let labels = utterance.labels_path.to_string_lossy().into_owned();
+        let rate = format!("{RATE_HZ}");
+        let out = binary::run(&["curves", "--labels", &labels, "--rate", &rate]);
+        let table = Table::parse(&out.expect_done().text());
+        Self {
+            utterance,
+            aperture_mm: table.column("aperture_mm"),
+        }
+    }
+
+    fn during(&self, label: &Label) -> &[f64] {
+        let row = |s: f64| ((s * RATE_HZ).ceil() as usize).min(self.aperture_mm.len());
+        &self.aperture_mm[row(label.start)..row(label.end)]
+    }
+}
+
+/// Judges each segment that `wanted` picks by `measure` and `passes`; a table of all of them when
+/// one fails.
+fn judge(
+    rule: &str,
+    wanted: impl Fn(&[Label], usize) -> bool,
+    measure: impl Fn(&[f64]) -> f64,
+    passes: impl Fn(f64) -> bool,
+) {
+    let mut table = String::new();
+    let (mut judged, mut failed) = (0, 0);
+    for utterance in fixtures::all() {
+        let mouth = Mouth::of(utterance);
+        let labels = &mouth.utterance.labels;
+        for (index, label) in labels.iter().enumerate() {
+            if !wanted(labels, index) {
+                continue;
+            }
+            let value = measure(mouth.during(label));
+            let ok = passes(value);
+            judged += 1;
+            failed += usize::from(!ok);
+            let phone = |i: Option<usize>| {
+                i.and_then(|i| labels.get(i))
+                    .map_or("-", |l| l.phone.as_str())
+            };
+            let _ = writeln!(
+                table,
+                "{} {:8} {:7.3} s {:4.0} ms  {:>3} [{:>3}] {:<3} {value:7.2} mm",
+                if ok { "     " } else { "FAILS" },
+                mouth.utterance.name,
+                label.start,
+                (label.end - label.start) * 1e3,
+                phone(index.checked_sub(1)),
+                label.phone,
+                phone(Some(index + 1)),
+            );
+        }
+    }
+    assert!(judged > 0, "no segment to judge: the fixtures lack them");
+    assert!(
+        failed == 0,
+        "{rule}: {failed} of {judged} segments fail\n      utterance     from  lasts  phone in context  aperture\n{table}"
+    );
+}
+
+fn least(values: &[f64]) -> f64 {
+    values.iter().copied().fold(f64::INFINITY, f64::min)
+}
+
+fn most(values: &[f64]) -> f64 {
+    values.iter().copied().fold(f64::NEG_INFINITY, f64::max)
+}
+
+/// Guards the closures that everyone lip-reads.
+#[test]
+fn lips_meet_in_every_bilabial() {
+    judge(
+        &format!("lips at most {CLOSED_MM} mm apart somewhere in each p b m"),
+        closes,
+        least,
+        |mm| mm <= CLOSED_MM,
+    );
+}
+
+/// Guards against a mumbling face: closures bought by never opening.
+#[test]
+fn the_mouth_opens_in_every_long_open_vowel() {
+    judge(
+        &format!("more than {OPEN_MM} mm open somewhere in each aa ae ao aw ay of 80 ms"),
+        |labels, index| opens(&labels[index]),
+        most,
+        |mm| mm > OPEN_MM,
+    );
+}
+
+/// Guards pauses: a mouth that goes on moving or stays open where nothing is said.
+#[test]
+fn the_mouth_comes_to_rest_in_long_pauses() {
+    judge(
+        &format!("at most {REST_MM_MAX} mm open somewhere in each pause of 300 ms"),
+        |labels, index| rests(&labels[index]),
+        least,
+        |mm| mm <= REST_MM_MAX,
+    );
+}
+
+/// Guards what scripts rely on: the columns' names, a row for each instant from 0 to the end, the
+/// same numbers in JSON as in CSV, and the same every time.
+#[test]
+fn curves_is_a_regular_table_in_csv_and_json() {
+    let labels = fixtures::named("flite").labels_path;
+    let labels = labels.to_string_lossy();
+    let run = |more: &[&str]| {
+        let args = [&["curves", "--labels", &labels, "--rate", "50"], more].concat();
+        binary::run(&args).expect_done().text()
+    };
+    let csv = run(&[]);
+    assert_eq!(csv, run(&[]), "two runs differ");
+    let table = Table::parse(&csv);
+    for name in [
+        "aperture_mm",
+        "width_mm",
+        "protrusion_mm",
+        "jaw_rad",
+        "lip_teeth_mm",
+    ] {
+        assert!(table.column(name).iter().all(|v| v.is_finite()), "{name}");
+    }
+    let times = table.column("time_s");
+    assert_eq!(times[0], 0.0);
+    assert!(times.windows(2).all(|w| (w[1] - w[0] - 0.02).abs() < 1e-6));
+    let end = fixtures::named("flite").labels.last().unwrap().end;
+    assert!((end - times[times.len() - 1]).abs() <= 0.02, "{end}");
+
+    let json: Vec<serde_json::Map<String, serde_json::Value>> =
+        serde_json::from_str(&run(&["--json"])).unwrap();
+    assert_eq!(json.len(), table.row_count());
+    for name in table.names() {
+        let column = table.column(name);
+        let same = json.iter().zip(column).all(|(row, v)| row[name] == v);
+        assert!(same, "{name} differs between CSV and JSON");
+    }
+}
