@@ -4,11 +4,12 @@
 //! ears with it; what moves open later is the renderer's business.
 
 use glam::{Vec3, Vec3A};
-use obvhs::ray::Ray;
+use obvhs::bvh2::Bvh2;
+use obvhs::ray::{Ray, RayHit};
 use obvhs::triangle::Triangle;
 use obvhs::{BvhBuildParams, bvh2::builder::build_bvh2_from_tris};
 
-use crate::Head;
+use crate::{Head, Material, Mesh, Part};
 
 /// Rays a vertex; directions are a fixed spiral, so that every build gives the same head.
 const RAYS: usize = 40;
@@ -16,56 +17,82 @@ const RAYS: usize = 40;
 const REACH_MM: f32 = 45.0;
 
 /// Fills in the occlusion of the skin and of every part.
+///
+/// What lies inside the mouth is shaded by its own kind only: the lips are shut at rest and would
+/// leave it black for good. How much light an open mouth lets in is the renderer's business.
 pub(crate) fn bake(head: &mut Head) {
-    let mut triangles = Vec::new();
-    let meshes = std::iter::once(&head.skin.mesh).chain(head.parts.iter().map(|p| &p.mesh));
-    for mesh in meshes {
-        triangles.extend(mesh.triangles.iter().map(|t| {
-            let [v0, v1, v2] = t.map(|i| Vec3A::from(mesh.positions[i as usize]));
-            Triangle { v0, v1, v2 }
-        }));
-    }
-    let bvh = build_bvh2_from_tris(
-        &triangles,
-        BvhBuildParams::fast_build(),
-        &mut std::time::Duration::default(),
+    let inside = |part: &Part| {
+        matches!(
+            part.material,
+            Material::Teeth | Material::Gums | Material::Tongue | Material::Cavity
+        )
+    };
+    let blocks = |part: &&Part| inside(part) && part.material != Material::Cavity;
+    let whole = Scene::new(
+        std::iter::once(&head.skin.mesh)
+            .chain(head.parts.iter().filter(|p| !inside(p)).map(|p| &p.mesh)),
     );
+    let mouth = Scene::new(head.parts.iter().filter(blocks).map(|p| &p.mesh));
     let directions = spiral();
-    let seen = |origin: Vec3, normal: Vec3| {
+    whole.bake(&mut head.skin.mesh, &directions);
+    for part in &mut head.parts {
+        let scene = if inside(part) { &mouth } else { &whole };
+        scene.bake(&mut part.mesh, &directions);
+    }
+}
+
+/// What can stand in the way of a ray.
+struct Scene {
+    triangles: Vec<Triangle>,
+    bvh: Bvh2,
+}
+
+impl Scene {
+    fn new<'a>(meshes: impl Iterator<Item = &'a Mesh>) -> Self {
+        let mut triangles = Vec::new();
+        for mesh in meshes {
+            triangles.extend(mesh.triangles.iter().map(|t| {
+                let [v0, v1, v2] = t.map(|i| Vec3A::from(mesh.positions[i as usize]));
+                Triangle { v0, v1, v2 }
+            }));
+        }
+        let mut spent = std::time::Duration::default();
+        let bvh = build_bvh2_from_tris(&triangles, BvhBuildParams::fast_build(), &mut spent);
+        Self { triangles, bvh }
+    }
+
+    /// Share of `directions` about `normal` in which nothing stands near.
+    fn open(&self, origin: Vec3, normal: Vec3, directions: &[Vec3; RAYS]) -> f32 {
         let (side, up) = normal.any_orthonormal_pair();
         let start = Vec3A::from(origin + normal * 0.35);
-        let mut open = 0;
-        for d in &directions {
+        let free = directions.iter().filter(|d| {
             let direction = Vec3A::from(side * d.x + up * d.y + normal * d.z);
             let ray = Ray::new(start, direction, 0.0, REACH_MM);
-            let mut hit = obvhs::ray::RayHit::none();
-            let blocked = bvh.ray_traverse(ray, &mut hit, |ray, id| {
-                triangles[bvh.primitive_indices[id] as usize].intersect(ray)
-            });
-            open += usize::from(!blocked);
-        }
-        open as f32 / RAYS as f32
-    };
-    let bake_mesh = |mesh: &mut crate::Mesh| {
+            let mut hit = RayHit::none();
+            !self.bvh.ray_traverse(ray, &mut hit, |ray, id| {
+                self.triangles[self.bvh.primitive_indices[id] as usize].intersect(ray)
+            })
+        });
+        free.count() as f32 / RAYS as f32
+    }
+
+    /// Sets the occlusion of every vertex of `mesh`, on two threads: the result does not depend on
+    /// how the work is split.
+    fn bake(&self, mesh: &mut Mesh, directions: &[Vec3; RAYS]) {
         let (positions, normals) = (&mesh.positions, &mesh.normals);
         let count = positions.len();
         let mut values = vec![1.0_f32; count];
         let half = count.div_ceil(2).max(1);
-        // Both cores of a small machine; the result does not depend on how it is split.
         std::thread::scope(|scope| {
             for (chunk, start) in values.chunks_mut(half).zip((0..count).step_by(half)) {
                 scope.spawn(move || {
                     for (k, value) in chunk.iter_mut().enumerate() {
-                        *value = seen(positions[start + k], normals[start + k]);
+                        *value = self.open(positions[start + k], normals[start + k], directions);
                     }
                 });
             }
         });
         mesh.occlusion = values;
-    };
-    bake_mesh(&mut head.skin.mesh);
-    for part in &mut head.parts {
-        bake_mesh(&mut part.mesh);
     }
 }
 

@@ -39,7 +39,8 @@ pub(super) fn cap(surface: &Surface) -> Part {
             polyline::at_share(line, share) * vec3(if column < 0.0 { -1.0 } else { 1.0 }, 1.0, 1.0);
         let out = vec3(skin.x, (skin.y - 50.0).max(0.0), skin.z - 5.0).normalize_or(Vec3::Y);
         let full = SIDE_MM + (TOP_MM - SIDE_MM) * ramp(50.0, 125.0, skin.y);
-        let tuft = 0.5 * (u * 151.0 + 5.0 * v).sin() + 0.5 * (u * 67.0 - 11.0 * v).sin();
+        let tuft =
+            (1.0 - v * v) * 0.5 * ((u * 151.0 + 5.0 * v).sin() + (u * 67.0 - 11.0 * v).sin());
         let grown = 1.0 - (-share * length / GROWTH_MM).exp();
         skin + out * (0.25 + grown * (full + 0.8 * tuft))
     }));

@@ -66,7 +66,8 @@ impl Surface {
     /// Radius at a longitude (radians, mirrored where negative) and height; bilinear.
     fn radius(&self, longitude: f32, y: f32) -> f32 {
         let column = (longitude.abs() / PI * SIDE as f32 - 0.5).clamp(0.0, SIDE as f32 - 1.0);
-        let row = (TOP - y).clamp(5.0, SIDE as f32 - 1.0);
+        // The map's top rows are empty: above them the last full one holds.
+        let row = (TOP - y).clamp(6.0, SIDE as f32 - 1.0);
         let (c, r) = (column.floor() as usize, row.floor() as usize);
         let (fc, fr) = (column.fract(), row.fract());
         let at = |r: usize, c: usize| self.radius[r.min(SIDE - 1) * SIDE + c.min(SIDE - 1)];
