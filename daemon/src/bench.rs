@@ -32,7 +32,7 @@ const SIZES: [Size; 2] = [
 ];
 
 /// Pictures drawn for each figure, after one that is not counted.
-const PICTURES: u32 = 12;
+const PICTURES: u32 = 8;
 
 /// Runs the command.
 pub fn run(args: &BenchArgs) -> anyhow::Result<()> {

@@ -77,6 +77,9 @@ fn parse_format(b: &[u8; 40], len: u32) -> Result<(u32, u16, Coding), String> {
         0 => bits.div_ceil(8),
         width => width,
     };
+    if bits == 0 || u32::from(bits) > 8 * u32::from(container) {
+        return Err(format!("its samples have {bits} bits in {container} bytes"));
+    }
     let coding = match (tag, container) {
         (1 | 0xFFFE, 1) => Coding::U8,
         (1 | 0xFFFE, 2) => Coding::S16,

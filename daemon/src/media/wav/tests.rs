@@ -157,6 +157,7 @@ fn what_is_no_sound_is_said_in_one_sentence_that_names_the_file() {
         (raw(1, 900, 16_000, 16, 4, &[0; 4]), "absurd"),
         (raw(0x55, 1, 16_000, 16, 4, &[0; 4]), "compressed"),
         (raw(1, 1, 16_000, 48, 6, &[0; 6]), "48 bits"),
+        (raw(1, 1, 16_000, 0, 4, &[0; 4]), "0 bits"),
     ];
     for (bytes, expected) in cases {
         let error = decode(&bytes[..], "voice.wav").unwrap_err().to_string();
