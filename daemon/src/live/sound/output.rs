@@ -19,16 +19,18 @@ use crate::live::time::{Origin, seconds, ticks_from_frames, ticks_from_ns};
 const LEAD_TICKS: i64 = TICK_RATE * 80 / 1000;
 /// Ticks mixed at once.
 pub const BLOCK_TICKS: usize = 480;
-/// A device that has not called for this long is dead; the longest pause that was seen in one that
-/// lived was 1.5 s, right after its start.
-const SILENT_NS: i64 = 1_200_000_000;
+/// A device that has not called for this long is dead. Some pause for up to 2 s when they start and
+/// after an underrun: a PulseAudio sink that nobody else uses prepares that much at once.
+const SILENT_NS: i64 = 2_500_000_000;
 const SILENT_AT_START_NS: i64 = 3_000_000_000;
 /// Periods that may be missed before the above counts, for devices with long ones.
 const SILENT_PERIODS: i64 = 8;
 /// The sound thread itself was not let run (suspended process): judge nothing by that.
 const OVERSLEPT_NS: i64 = 500_000_000;
-/// How much faster than time a device may take sound, over this long.
-const PACE_NS: i64 = 2_000_000_000;
+/// Over this long a device may take half as much sound again as time passes, and what fills the
+/// largest buffers that were seen.
+const PACE_NS: i64 = 8_000_000_000;
+const PACE_SPARE_TICKS: i64 = 4 * TICK_RATE;
 /// First and longest wait before a device is tried again.
 const RETRY_NS: i64 = 2_000_000_000;
 const RETRY_NS_MAX: i64 = 30_000_000_000;
@@ -324,13 +326,12 @@ impl Playing {
         }
         let taken = self.device.link.taken.load(Ordering::Acquire);
         let elapsed_ns = now_ns - watch.pace.0;
+        let played = ticks_from_frames(taken - watch.pace.1, self.device.rate);
+        if played > ticks_from_ns(elapsed_ns) * 3 / 2 + PACE_SPARE_TICKS {
+            return Some(Fault::Unpaced);
+        }
         if elapsed_ns > PACE_NS {
-            let played = ticks_from_frames(taken - watch.pace.1, self.device.rate);
             watch.pace = (now_ns, taken);
-            // Half as fast again, and what fills its buffers at the start.
-            if played > ticks_from_ns(elapsed_ns) * 3 / 2 + TICK_RATE {
-                return Some(Fault::Unpaced);
-            }
         }
         None
     }
