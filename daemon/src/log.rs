@@ -11,7 +11,7 @@ pub fn start(verbose: u8, live: bool) {
         EnvFilter::new(match (verbose, live) {
             // That pictures are drawn in software concerns a window; an export only takes longer.
             (0, false) => "warn,mouthpiece_render::gpu=error",
-            (0, true) | (1, _) => "warn,mouthpiece=info,mouthpiece_render=info",
+            (0, true) | (1, _) => "warn,winit=error,mouthpiece=info,mouthpiece_render=info",
             _ => "info,mouthpiece=debug,mouthpiece_render=debug",
         })
     });

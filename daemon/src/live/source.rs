@@ -41,7 +41,7 @@ impl Source {
             let rate = SampleRate::new(args.label_rate)?;
             let sound = args.audio.as_deref().map(wav::read).transpose()?;
             return Self::start(sound.map(|s| s.frames), move |send| {
-                stdin_labels(rate, send)
+                stdin_labels(rate, send);
             });
         }
         let Utterance {

@@ -19,6 +19,7 @@ use winit::dpi::{PhysicalPosition, PhysicalSize};
 use winit::event::{ElementState, StartCause, WindowEvent};
 use winit::event_loop::{ActiveEventLoop, ControlFlow, EventLoop, EventLoopProxy};
 use winit::keyboard::{Key, NamedKey};
+use winit::monitor::MonitorHandle;
 use winit::window::{Fullscreen, Window, WindowId};
 
 use super::player::Sight;
@@ -157,12 +158,11 @@ impl ApplicationHandler<Wake> for App {
     fn window_event(&mut self, events: &ActiveEventLoop, _id: WindowId, event: WindowEvent) {
         match event {
             WindowEvent::CloseRequested | WindowEvent::Destroyed => events.exit(),
-            WindowEvent::KeyboardInput { event, .. } => {
+            WindowEvent::KeyboardInput { event, .. }
                 if event.state == ElementState::Pressed
-                    && event.logical_key == Key::Named(NamedKey::Escape)
-                {
-                    events.exit();
-                }
+                    && event.logical_key == Key::Named(NamedKey::Escape) =>
+            {
+                events.exit();
             }
             WindowEvent::Resized(size) => {
                 if let Some(target) = self.open.as_mut().and_then(|o| o.target.as_mut()) {
@@ -198,7 +198,10 @@ impl App {
         let monitor = events
             .primary_monitor()
             .or_else(|| events.available_monitors().next());
-        if let Some(millihertz) = monitor.as_ref().and_then(|m| m.refresh_rate_millihertz()) {
+        if let Some(millihertz) = monitor
+            .as_ref()
+            .and_then(MonitorHandle::refresh_rate_millihertz)
+        {
             self.pace.set_refresh(millihertz);
         }
         if self.look.fullscreen {

@@ -4,7 +4,7 @@
 
 use anyhow::{Context as _, Result};
 use rubato::audioadapter_buffers::direct::InterleavedSlice;
-use rubato::{Fft, FixedSync, Resampler as _};
+use rubato::{Fft, FixedSync, Resampler};
 
 /// Frames that go through at once: 10 ms at 48 kHz, so that it adds little delay.
 const CHUNK: usize = 480;
@@ -33,7 +33,7 @@ impl Resample {
             Some(fft.with_context(|| format!("sound at {from} Hz cannot be turned to {to} Hz"))?)
         };
         Ok(Self {
-            skip: fft.as_ref().map_or(0, |f| f.output_delay()),
+            skip: fft.as_ref().map_or(0, Resampler::output_delay),
             fft,
             from,
             to,
@@ -65,7 +65,7 @@ impl Resample {
         let before = out.len();
         let missing = usize::try_from(whole.saturating_sub(self.given))?;
         while self.fft.is_some() && out.len() - before < missing {
-            let chunk = self.fft.as_ref().map_or(0, |f| f.input_frames_next());
+            let chunk = self.fft.as_ref().map_or(0, Resampler::input_frames_next);
             self.waiting.resize(self.waiting.len() + chunk, 0.0);
             self.run(out)?;
         }
