@@ -70,13 +70,17 @@ fn status(error: &anyhow::Error) -> ExitCode {
     }
 }
 
-/// An error with its causes, without those that it has quoted already.
+/// An error with its causes, without those that it has quoted already, in one line: drivers' own
+/// words come in many.
 fn sentence(error: &anyhow::Error) -> String {
     let mut text = error.to_string();
     for cause in error.chain().skip(1).map(ToString::to_string) {
         if !text.contains(&cause) {
             text = format!("{text}: {cause}");
         }
+    }
+    if text.contains('\n') {
+        text = text.split_whitespace().collect::<Vec<_>>().join(" ");
     }
     text
 }
