@@ -47,7 +47,7 @@ pub enum Command {
 /// The daemon: a window, sound and a socket; the face idles alive until something speaks
 #[derive(Debug, Args)]
 #[command(
-    after_help = "Examples:\n  mouthpiece run\n  mouthpiece run --listen /tmp/face.sock --fullscreen\n  mouthpiece run --listen 127.0.0.1:7716 --audio-device alsa:pulse"
+    after_help = "Examples:\n  mouthpiece run\n  mouthpiece run --listen ./face.sock --fullscreen\n  mouthpiece run --listen 127.0.0.1:7716 --audio-device alsa:pulse"
 )]
 pub struct RunArgs {
     /// Where to listen: a path for a Unix socket or HOST:PORT on loopback [default:
