@@ -9,16 +9,38 @@ use std::sync::Arc;
 use std::time::Instant;
 
 use mouthpiece_render::{Background, Camera, Gpu, Offscreen, Tier, View};
-use mouthpiece_rig::{Articulation, Calibration, Control, Head, KeyFrame, STEP_TICKS, Simulation, TICK_RATE};
+use mouthpiece_rig::{
+    Articulation, Calibration, Control, Head, KeyFrame, STEP_TICKS, Simulation, TICK_RATE,
+};
 
 /// Pictures of the sheet: name, where from, jaw (rad) and lip aperture (mm), width, protrusion (mm), lids, gaze and turn.
 const POSES: &[(&str, Camera, [f32; 4], [f32; 3])] = &[
-    ("front", Camera::Front, [0.0, 0.0, 1.0, 0.0], [0.0, 0.0, 0.0]),
+    (
+        "front",
+        Camera::Front,
+        [0.0, 0.0, 1.0, 0.0],
+        [0.0, 0.0, 0.0],
+    ),
     ("side", Camera::Side, [0.0, 0.0, 1.0, 0.0], [0.0, 0.0, 0.0]),
-    ("34", Camera::ThreeQuarter, [0.0, 0.0, 1.0, 0.0], [0.0, 0.0, 0.0]),
+    (
+        "34",
+        Camera::ThreeQuarter,
+        [0.0, 0.0, 1.0, 0.0],
+        [0.0, 0.0, 0.0],
+    ),
     ("ah", Camera::Front, [0.20, 12.0, 1.0, 0.0], [0.0, 0.0, 0.0]),
-    ("ee", Camera::Front, [0.06, 5.0, 1.10, 0.0], [0.3, 0.15, 0.15]),
-    ("oo", Camera::ThreeQuarter, [0.06, 4.0, 0.85, 4.0], [0.6, -0.2, -0.3]),
+    (
+        "ee",
+        Camera::Front,
+        [0.06, 5.0, 1.10, 0.0],
+        [0.3, 0.15, 0.15],
+    ),
+    (
+        "oo",
+        Camera::ThreeQuarter,
+        [0.06, 4.0, 0.85, 4.0],
+        [0.6, -0.2, -0.3],
+    ),
 ];
 
 fn main() -> Result<(), Box<dyn Error>> {
@@ -34,17 +56,40 @@ fn main() -> Result<(), Box<dyn Error>> {
     let started = Instant::now();
     let gpu = Gpu::headless()?;
     println!("{} ({:?})", gpu.info().name, gpu.info().device_type);
-    println!("adapter open after {:.0} ms", started.elapsed().as_secs_f64() * 1e3);
+    println!(
+        "adapter open after {:.0} ms",
+        started.elapsed().as_secs_f64() * 1e3
+    );
     let mut offscreen = Offscreen::new(&gpu, &head, size, tier)?;
     for (name, camera, mouth, rest) in POSES {
-        let view = View { camera: *camera, ..View::default() };
-        save(&folder, name, size, offscreen.render(&posed(&head, *mouth, *rest)?, &view)?)?;
+        let view = View {
+            camera: *camera,
+            ..View::default()
+        };
+        save(
+            &folder,
+            name,
+            size,
+            offscreen.render(&posed(&head, *mouth, *rest)?, &view)?,
+        )?;
     }
-    let flash = View { background: Background::Plain([200, 205, 210]), flash: true, ..View::default() };
-    save(&folder, "flash", size, offscreen.render(&head.rest_frame(), &flash)?)?;
+    let flash = View {
+        background: Background::Plain([200, 205, 210]),
+        flash: true,
+        ..View::default()
+    };
+    save(
+        &folder,
+        "flash",
+        size,
+        offscreen.render(&head.rest_frame(), &flash)?,
+    )?;
     drop(offscreen);
 
-    println!("| tier | {} x {} | ready ms | first ms | median ms | batch ms |", size.0, size.1);
+    println!(
+        "| tier | {} x {} | ready ms | first ms | median ms | batch ms |",
+        size.0, size.1
+    );
     let open = posed(&head, POSES[3].2, POSES[3].3)?;
     for tier in Tier::ALL {
         measure(&gpu, &head, &open, size, tier)?;
@@ -55,7 +100,13 @@ fn main() -> Result<(), Box<dyn Error>> {
 /// The head after half a second of holding a posture.
 fn posed(head: &Arc<Head>, mouth: [f32; 4], rest: [f32; 3]) -> Result<KeyFrame, Box<dyn Error>> {
     let [jaw_rad, aperture_mm, width, protrusion_mm] = mouth;
-    let articulation = Articulation { jaw_rad, aperture_mm, width, protrusion_mm, ..Articulation::REST };
+    let articulation = Articulation {
+        jaw_rad,
+        aperture_mm,
+        width,
+        protrusion_mm,
+        ..Articulation::REST
+    };
     let mut controls = Calibration::reference()?.controls(&articulation);
     controls[Control::LidL] = rest[0];
     controls[Control::LidR] = rest[0];
@@ -70,7 +121,13 @@ fn posed(head: &Arc<Head>, mouth: [f32; 4], rest: [f32; 3]) -> Result<KeyFrame, 
     Ok(frame)
 }
 
-fn measure(gpu: &Gpu, head: &Head, frame: &KeyFrame, size: (u32, u32), tier: Tier) -> Result<(), Box<dyn Error>> {
+fn measure(
+    gpu: &Gpu,
+    head: &Head,
+    frame: &KeyFrame,
+    size: (u32, u32),
+    tier: Tier,
+) -> Result<(), Box<dyn Error>> {
     let started = Instant::now();
     let mut offscreen = Offscreen::new(gpu, head, size, tier)?;
     let ready = started.elapsed();

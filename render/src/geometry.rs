@@ -33,7 +33,9 @@ impl SkinGeometry {
                 unorm(mesh.occlusion[i]),
             ],
         };
-        let mut still: Vec<SkinStill> = (0..mesh.positions.len()).map(|i| vertex(i, mesh.uvs[i])).collect();
+        let mut still: Vec<SkinStill> = (0..mesh.positions.len())
+            .map(|i| vertex(i, mesh.uvs[i]))
+            .collect();
         let mut copies = Vec::new();
         let mut copy_of = std::collections::HashMap::new();
         let mut indices = Vec::with_capacity(mesh.triangles.len() * 3);
@@ -126,11 +128,17 @@ impl PartGeometry {
                 rest: p.to_array(),
                 normal: mesh.normals[i].to_array(),
                 uv: uv.to_array(),
-                shares: [unorm(mesh.occlusion[i]), unorm(part.weight[i]), unorm(edge[i]), 0],
+                shares: [
+                    unorm(mesh.occlusion[i]),
+                    unorm(part.weight[i]),
+                    unorm(edge[i]),
+                    0,
+                ],
                 bodies: [part.bodies[0] as u8, part.bodies[1] as u8, 0, 0],
             });
         }
-        self.indices.extend(mesh.triangles.iter().flatten().map(|i| base + i));
+        self.indices
+            .extend(mesh.triangles.iter().flatten().map(|i| base + i));
     }
 }
 
@@ -168,7 +176,13 @@ fn edge_distance(mesh: &Mesh) -> Vec<f32> {
     // Relaxation along sides; the order of a hash map does not change where it ends.
     let mut lengths: Vec<(u32, u32, f32)> = sides
         .keys()
-        .map(|&(a, b)| (a, b, mesh.positions[a as usize].distance(mesh.positions[b as usize])))
+        .map(|&(a, b)| {
+            (
+                a,
+                b,
+                mesh.positions[a as usize].distance(mesh.positions[b as usize]),
+            )
+        })
         .collect();
     lengths.sort_by_key(|&(a, b, _)| (a, b));
     for _ in 0..64 {
@@ -206,13 +220,21 @@ mod tests {
             vec3(turn.sin(), y, turn.cos()) * 90.0
         };
         let skin = &mut head.skin;
-        skin.mesh.positions = us.iter().flat_map(|&u| [place(u, 0.0), place(u, 0.2)]).collect();
-        skin.mesh.uvs = us.iter().flat_map(|&u| [vec2(u, 0.5), vec2(u, 0.4)]).collect();
+        skin.mesh.positions = us
+            .iter()
+            .flat_map(|&u| [place(u, 0.0), place(u, 0.2)])
+            .collect();
+        skin.mesh.uvs = us
+            .iter()
+            .flat_map(|&u| [vec2(u, 0.5), vec2(u, 0.4)])
+            .collect();
         let n = skin.mesh.positions.len();
         skin.mesh.normals = vec![Vec3::Z; n];
         skin.mesh.occlusion = vec![1.0; n];
         (skin.weight, skin.vermilion, skin.wet) = (vec![1.0; n], vec![0.0; n], vec![0.0; n]);
-        skin.mesh.triangles = (0..3).flat_map(|k| [[2 * k, 2 * k + 2, 2 * k + 3], [2 * k, 2 * k + 3, 2 * k + 1]]).collect();
+        skin.mesh.triangles = (0..3)
+            .flat_map(|k| [[2 * k, 2 * k + 2, 2 * k + 3], [2 * k, 2 * k + 3, 2 * k + 1]])
+            .collect();
         head
     }
 
@@ -220,11 +242,19 @@ mod tests {
     fn no_drawn_triangle_runs_the_wrong_way_round_the_chart() {
         let geometry = SkinGeometry::of(&strip());
         for t in geometry.indices.chunks_exact(3) {
-            let u: Vec<f32> = t.iter().map(|&i| geometry.still[i as usize].uv[0]).collect();
-            let span = u.iter().cloned().fold(f32::MIN, f32::max) - u.iter().cloned().fold(f32::MAX, f32::min);
+            let u: Vec<f32> = t
+                .iter()
+                .map(|&i| geometry.still[i as usize].uv[0])
+                .collect();
+            let span = u.iter().cloned().fold(f32::MIN, f32::max)
+                - u.iter().cloned().fold(f32::MAX, f32::min);
             assert!(span < 0.5, "a triangle spans {span} of the chart");
         }
-        assert_eq!(geometry.still.len(), 8 + 2, "both low vertices behind the seam are copied");
+        assert_eq!(
+            geometry.still.len(),
+            8 + 2,
+            "both low vertices behind the seam are copied"
+        );
         let (last, source) = (geometry.moving[9], geometry.copies[1]);
         assert_eq!(last, geometry.moving[source as usize]);
     }

@@ -4,8 +4,8 @@
 //! Asks for nothing beyond WebGPU's downlevel limits, so that any Vulkan, Metal, DX12 or GL driver
 //! of the last ten years will do. Knows nothing of heads.
 
-use std::sync::{Arc, Mutex};
 use std::sync::atomic::{AtomicBool, Ordering};
+use std::sync::{Arc, Mutex};
 
 use thiserror::Error;
 use wgpu::{Backends, DeviceType};
@@ -23,7 +23,9 @@ pub enum GpuError {
         looked: String,
     },
     /// `WGPU_ADAPTER_NAME` names none of the adapters.
-    #[error("no graphics adapter has {wanted:?} in its name (there are: {found}): change or unset WGPU_ADAPTER_NAME")]
+    #[error(
+        "no graphics adapter has {wanted:?} in its name (there are: {found}): change or unset WGPU_ADAPTER_NAME"
+    )]
     NoSuchAdapter {
         /// What was asked for.
         wanted: String,
@@ -31,7 +33,9 @@ pub enum GpuError {
         found: String,
     },
     /// The driver refused to open the adapter.
-    #[error("the graphics adapter {adapter} cannot be opened: {source}; update its driver or choose another with WGPU_ADAPTER_NAME")]
+    #[error(
+        "the graphics adapter {adapter} cannot be opened: {source}; update its driver or choose another with WGPU_ADAPTER_NAME"
+    )]
     Device {
         /// Name of the adapter.
         adapter: String,
@@ -42,7 +46,9 @@ pub enum GpuError {
     #[error("the window cannot be drawn to: {0}; draw offscreen, or start from a desktop session")]
     Surface(#[from] wgpu::CreateSurfaceError),
     /// The surface offers no format we can draw in.
-    #[error("the graphics adapter {adapter} cannot draw to this window: choose another with WGPU_ADAPTER_NAME")]
+    #[error(
+        "the graphics adapter {adapter} cannot draw to this window: choose another with WGPU_ADAPTER_NAME"
+    )]
     UnsupportedSurface {
         /// Name of the adapter.
         adapter: String,
@@ -70,7 +76,10 @@ impl Gpu {
         // GL is asked only when nothing better answers: opening it without a display makes EGL
         // print errors of its own.
         let chosen = Backends::from_env();
-        for backends in [chosen.unwrap_or(Backends::PRIMARY), chosen.unwrap_or(Backends::GL)] {
+        for backends in [
+            chosen.unwrap_or(Backends::PRIMARY),
+            chosen.unwrap_or(Backends::GL),
+        ] {
             let mut descriptor = wgpu::InstanceDescriptor::new_without_display_handle_from_env();
             descriptor.backends = backends;
             let instance = wgpu::Instance::new(descriptor);

@@ -60,7 +60,14 @@ impl Offscreen {
         let renderer = Renderer::new(gpu, head, FORMAT, tier)?;
         let slots = (0..FRAMES_IN_FLIGHT)
             .map(|_| {
-                let image = texture(gpu.device(), "offscreen", size, FORMAT, 1, wgpu::TextureUsages::COPY_SRC);
+                let image = texture(
+                    gpu.device(),
+                    "offscreen",
+                    size,
+                    FORMAT,
+                    1,
+                    wgpu::TextureUsages::COPY_SRC,
+                );
                 Slot {
                     view: image.create_view(&wgpu::TextureViewDescriptor::default()),
                     image,
@@ -125,12 +132,21 @@ impl Offscreen {
         if self.pending.len() >= FRAMES_IN_FLIGHT {
             return Err(RenderError::Full(self.pending.len()));
         }
-        let mut encoder = self
-            .gpu
-            .device()
-            .create_command_encoder(&wgpu::CommandEncoderDescriptor { label: Some("offscreen") });
+        let mut encoder =
+            self.gpu
+                .device()
+                .create_command_encoder(&wgpu::CommandEncoderDescriptor {
+                    label: Some("offscreen"),
+                });
         let slot = &self.slots[self.next_slot];
-        self.renderer.encode(&self.gpu, &mut encoder, key_frame, view, &slot.view, self.size)?;
+        self.renderer.encode(
+            &self.gpu,
+            &mut encoder,
+            key_frame,
+            view,
+            &slot.view,
+            self.size,
+        )?;
         encoder.copy_texture_to_buffer(
             slot.image.as_image_copy(),
             wgpu::TexelCopyBufferInfo {
@@ -178,13 +194,21 @@ impl Offscreen {
             return Err(RenderError::DeviceLost);
         }
         waited.map_err(|e| failed(&e))?;
-        pending.mapped.recv_timeout(PATIENCE).map_err(|e| failed(&e))?.map_err(|e| failed(&e))?;
+        pending
+            .mapped
+            .recv_timeout(PATIENCE)
+            .map_err(|e| failed(&e))?
+            .map_err(|e| failed(&e))?;
         let rows = &self.slots[pending.slot].rows;
         {
             let bytes = rows.get_mapped_range(..).map_err(|e| failed(&e))?;
             let row = self.size.0 as usize * 4;
             let padded = padded_row(self.size.0) as usize;
-            for (out, row_bytes) in self.pixels.chunks_exact_mut(row).zip(bytes.chunks_exact(padded)) {
+            for (out, row_bytes) in self
+                .pixels
+                .chunks_exact_mut(row)
+                .zip(bytes.chunks_exact(padded))
+            {
                 out.copy_from_slice(&row_bytes[..row]);
             }
         }

@@ -45,13 +45,12 @@ impl Openings {
             .collect();
         let eyes = [head.eye_centre, head.eye_centre * vec3(-1.0, 1.0, 1.0)];
         let radius = head.eye_radius.max(1.0);
-        // The margin is what the lids hold wholly. Upper lids turn down to close, lower ones up.
+        // The inner edge of the margin, which the lids hold wholly. Upper lids turn down, lower ones up.
         let mut lids: [Vec<u32>; 4] = Default::default();
-        for lid in head.lids.iter().filter(|l| l.hold > 0.99 && l.turn != 0.0) {
+        let wet = |vertex: u32| head.skin.wet.get(vertex as usize).is_some_and(|w| *w > 0.5);
+        for lid in head.lids.iter().filter(|l| l.hold > 0.99 && wet(l.vertex)) {
             let side = if lid.left { 0 } else { 2 };
-            let p = positions.get(lid.vertex as usize).copied().unwrap_or_default();
-            let middle = eyes[side / 2].y;
-            lids[side + usize::from(p.y < middle)].push(lid.vertex);
+            lids[side + usize::from(lid.turn > 0.0)].push(lid.vertex);
         }
         let mut openings = Self {
             lips,
@@ -62,7 +61,11 @@ impl Openings {
             mouth_at_rest: super::maps::landmarks::Landmarks::of(head).mouth,
         };
         let rest = openings.measure(positions);
-        for (open, pair) in openings.open_at_rest.iter_mut().zip(rest.lids.chunks_exact(2)) {
+        for (open, pair) in openings
+            .open_at_rest
+            .iter_mut()
+            .zip(rest.lids.chunks_exact(2))
+        {
             *open = (pair[0].x - pair[1].x).max(0.05);
         }
         openings
@@ -85,7 +88,8 @@ impl Openings {
     /// Middle of the gap and its halves: the mean gap of the middle columns counts, so that a mouth
     /// that is open only in the middle lets in little.
     fn mouth(&self, skin: &[Vec3]) -> (Vec4, f32) {
-        let (mut middle, mut gap_sum, mut gap_max, mut columns) = (Vec3::ZERO, 0.0_f32, 0.0_f32, 0.0_f32);
+        let (mut middle, mut gap_sum, mut gap_max, mut columns) =
+            (Vec3::ZERO, 0.0_f32, 0.0_f32, 0.0_f32);
         let (mut left, mut right) = (f32::NEG_INFINITY, f32::INFINITY);
         for &(upper, lower) in &self.lips {
             let (Some(u), Some(l)) = (skin.get(upper as usize), skin.get(lower as usize)) else {
@@ -106,7 +110,11 @@ impl Openings {
             return (self.mouth_at_rest.extend(1.0), 0.0);
         }
         let half_width = ((left - right) * 0.5).max(1.0);
-        let half_width = if half_width.is_finite() { half_width } else { 1.0 };
+        let half_width = if half_width.is_finite() {
+            half_width
+        } else {
+            1.0
+        };
         let half_height = 0.5 * (0.6 * gap_max + 0.4 * gap_sum / columns);
         ((middle / columns).extend(half_width), half_height)
     }
@@ -141,7 +149,8 @@ impl Openings {
 /// Solves the normal equations of a parabola by Cramer's rule; none where points are too few.
 fn parabola(s: &[f64; 5], t: &[f64; 3]) -> Option<Vec4> {
     let det = |a: [f64; 3], b: [f64; 3], c: [f64; 3]| {
-        a[0] * (b[1] * c[2] - b[2] * c[1]) - b[0] * (a[1] * c[2] - a[2] * c[1]) + c[0] * (a[1] * b[2] - a[2] * b[1])
+        a[0] * (b[1] * c[2] - b[2] * c[1]) - b[0] * (a[1] * c[2] - a[2] * c[1])
+            + c[0] * (a[1] * b[2] - a[2] * b[1])
     };
     let (a, b, c) = ([s[0], s[1], s[2]], [s[1], s[2], s[3]], [s[2], s[3], s[4]]);
     let whole = det(a, b, c);
@@ -170,7 +179,10 @@ mod tests {
             }
         }
         let found = parabola(&s, &t).unwrap();
-        assert!((found - vec4(0.4, 0.1, -0.6, 0.0)).length() < 1e-4, "{found}");
+        assert!(
+            (found - vec4(0.4, 0.1, -0.6, 0.0)).length() < 1e-4,
+            "{found}"
+        );
         assert!(parabola(&[2.0; 5], &[0.0; 3]).is_none());
     }
 }

@@ -157,13 +157,6 @@ const SKIN_SHADOW: Recipe = Recipe {
     vertex: "skin_shadow",
     fragment: None,
     mesh: Mesh::Skin,
-    both_sides: true,
-    ..solid("shadow")
-};
-const PART_SHADOW: Recipe = Recipe {
-    vertex: "part_shadow",
-    fragment: None,
-    both_sides: true,
     ..solid("shadow")
 };
 
@@ -182,7 +175,6 @@ pub(crate) struct Pipelines {
     pub(crate) backdrop: wgpu::RenderPipeline,
     pub(crate) flash: wgpu::RenderPipeline,
     pub(crate) skin_shadow: wgpu::RenderPipeline,
-    pub(crate) part_shadow: wgpu::RenderPipeline,
 }
 
 impl Pipelines {
@@ -201,7 +193,11 @@ impl Pipelines {
                 immediate_size: 0,
             })
         };
-        let (frame, shadow, maps) = (Some(&layouts.frame), Some(&layouts.shadow), Some(&layouts.maps));
+        let (frame, shadow, maps) = (
+            Some(&layouts.frame),
+            Some(&layouts.shadow),
+            Some(&layouts.maps),
+        );
         let bare = layout(&[frame]);
         let lit = layout(&[frame, shadow]);
         let mapped = layout(&[frame, shadow, maps]);
@@ -221,7 +217,6 @@ impl Pipelines {
             backdrop: make(&BACKDROP, &bare)?,
             flash: make(&FLASH, &bare)?,
             skin_shadow: make(&SKIN_SHADOW, &bare)?,
-            part_shadow: make(&PART_SHADOW, &bare)?,
         })
     }
 }
@@ -261,52 +256,59 @@ fn pipeline(
         format,
         blend: None,
         // Strands write coverage to alpha; the picture's own alpha stays 1.
-        write_mask: if recipe.strands { wgpu::ColorWrites::COLOR } else { wgpu::ColorWrites::ALL },
+        write_mask: if recipe.strands {
+            wgpu::ColorWrites::COLOR
+        } else {
+            wgpu::ColorWrites::ALL
+        },
     })];
-    Ok(device.create_render_pipeline(&wgpu::RenderPipelineDescriptor {
-        label: Some(recipe.vertex),
-        layout: Some(layout),
-        vertex: wgpu::VertexState {
-            module: &module,
-            entry_point: Some(recipe.vertex),
-            compilation_options: options.clone(),
-            buffers: match recipe.mesh {
-                Mesh::Skin => &skin,
-                Mesh::Part => &part,
-                Mesh::None => &[],
+    Ok(
+        device.create_render_pipeline(&wgpu::RenderPipelineDescriptor {
+            label: Some(recipe.vertex),
+            layout: Some(layout),
+            vertex: wgpu::VertexState {
+                module: &module,
+                entry_point: Some(recipe.vertex),
+                compilation_options: options.clone(),
+                buffers: match recipe.mesh {
+                    Mesh::Skin => &skin,
+                    Mesh::Part => &part,
+                    Mesh::None => &[],
+                },
             },
-        },
-        primitive: wgpu::PrimitiveState {
-            cull_mode: (!recipe.both_sides && recipe.mesh != Mesh::None).then_some(wgpu::Face::Back),
-            ..Default::default()
-        },
-        depth_stencil: Some(wgpu::DepthStencilState {
-            format: DEPTH,
-            depth_write_enabled: Some(recipe.mesh != Mesh::None),
-            depth_compare: Some(recipe.depth),
-            stencil: wgpu::StencilState::default(),
-            bias: if shadow {
-                wgpu::DepthBiasState {
-                    constant: 2,
-                    slope_scale: 1.5,
-                    clamp: 0.0,
-                }
-            } else {
-                wgpu::DepthBiasState::default()
+            primitive: wgpu::PrimitiveState {
+                cull_mode: (!recipe.both_sides && recipe.mesh != Mesh::None)
+                    .then_some(wgpu::Face::Back),
+                ..Default::default()
             },
+            depth_stencil: Some(wgpu::DepthStencilState {
+                format: DEPTH,
+                depth_write_enabled: Some(recipe.mesh != Mesh::None),
+                depth_compare: Some(recipe.depth),
+                stencil: wgpu::StencilState::default(),
+                bias: if shadow {
+                    wgpu::DepthBiasState {
+                        constant: 2,
+                        slope_scale: 1.5,
+                        clamp: 0.0,
+                    }
+                } else {
+                    wgpu::DepthBiasState::default()
+                },
+            }),
+            multisample: wgpu::MultisampleState {
+                count: if shadow { 1 } else { samples },
+                alpha_to_coverage_enabled: recipe.strands && samples > 1,
+                ..Default::default()
+            },
+            fragment: recipe.fragment.map(|entry| wgpu::FragmentState {
+                module: &module,
+                entry_point: Some(entry),
+                compilation_options: options,
+                targets: &targets,
+            }),
+            multiview_mask: None,
+            cache: None,
         }),
-        multisample: wgpu::MultisampleState {
-            count: if shadow { 1 } else { samples },
-            alpha_to_coverage_enabled: recipe.strands && samples > 1,
-            ..Default::default()
-        },
-        fragment: recipe.fragment.map(|entry| wgpu::FragmentState {
-            module: &module,
-            entry_point: Some(entry),
-            compilation_options: options,
-            targets: &targets,
-        }),
-        multiview_mask: None,
-        cache: None,
-    }))
+    )
 }

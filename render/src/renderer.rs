@@ -8,7 +8,7 @@ use crate::geometry::{PartGeometry, SkinGeometry};
 use crate::gpu::Gpu;
 use crate::gpu_data::{Frame, SkinMoving};
 use crate::maps;
-use crate::openings::Openings;
+use crate::openings::{Open, Openings};
 use crate::pipelines::{Layouts, Pipelines};
 use crate::shader::ShaderError;
 use crate::studio::{Lamp, Studio};
@@ -21,7 +21,9 @@ use crate::view::{Background, Extent, View, srgb};
 #[derive(Debug, Error)]
 pub enum RenderError {
     /// The key frame is of another head.
-    #[error("the key frame has {got} skin vertices but the head has {wanted}: draw frames of the head that was loaded")]
+    #[error(
+        "the key frame has {got} skin vertices but the head has {wanted}: draw frames of the head that was loaded"
+    )]
     WrongHead {
         /// Vertices of the head.
         wanted: usize,
@@ -29,7 +31,9 @@ pub enum RenderError {
         got: usize,
     },
     /// The picture is larger than the adapter can draw, or empty.
-    #[error("a picture of {width} x {height} pixels cannot be drawn: this graphics adapter does 1 to {max} a side")]
+    #[error(
+        "a picture of {width} x {height} pixels cannot be drawn: this graphics adapter does 1 to {max} a side"
+    )]
     Size {
         /// Wanted width.
         width: u32,
@@ -42,7 +46,9 @@ pub enum RenderError {
     #[error(transparent)]
     Shader(#[from] ShaderError),
     /// The driver does not take our shaders or buffers.
-    #[error("the graphics driver refused to draw this: {0}; update the driver or choose another adapter with WGPU_ADAPTER_NAME")]
+    #[error(
+        "the graphics driver refused to draw this: {0}; update the driver or choose another adapter with WGPU_ADAPTER_NAME"
+    )]
     Refused(String),
     /// The driver was reset or the card is gone.
     #[error("the graphics device was lost: open it again")]
@@ -100,7 +106,12 @@ impl Renderer {
     ///
     /// # Errors
     /// When a shader file is broken.
-    pub fn new(gpu: &Gpu, head: &Head, format: wgpu::TextureFormat, tier: Tier) -> Result<Self, RenderError> {
+    pub fn new(
+        gpu: &Gpu,
+        head: &Head,
+        format: wgpu::TextureFormat,
+        tier: Tier,
+    ) -> Result<Self, RenderError> {
         let device = gpu.device();
         let detail = tier.detail();
         let samples = gpu.samples(format, detail.samples);
@@ -109,7 +120,12 @@ impl Renderer {
 
         let skin = SkinGeometry::of(head);
         let vertex = wgpu::BufferUsages::VERTEX;
-        let skin_moving = upload::buffer(gpu, "skin, moving", &skin.moving, vertex | wgpu::BufferUsages::COPY_DST);
+        let skin_moving = upload::buffer(
+            gpu,
+            "skin, moving",
+            &skin.moving,
+            vertex | wgpu::BufferUsages::COPY_DST,
+        );
         let skin_still = upload::buffer(gpu, "skin, still", &skin.still, vertex);
         let skin_indices = upload::buffer(gpu, "skin", &skin.indices, wgpu::BufferUsages::INDEX);
         let parts = DRAW_ORDER
@@ -119,7 +135,12 @@ impl Renderer {
                 (!geometry.indices.is_empty()).then(|| {
                     let buffers = PartBuffers {
                         vertices: upload::buffer(gpu, "part", &geometry.vertices, vertex),
-                        indices: upload::buffer(gpu, "part", &geometry.indices, wgpu::BufferUsages::INDEX),
+                        indices: upload::buffer(
+                            gpu,
+                            "part",
+                            &geometry.indices,
+                            wgpu::BufferUsages::INDEX,
+                        ),
                         count: geometry.indices.len() as u32,
                     };
                     (material, buffers)
@@ -135,8 +156,15 @@ impl Renderer {
         });
         let frame_group = group(device, &layouts.frame, &[frame.as_entire_binding()]);
         let side = detail.shadow_map;
-        let shadow_map = texture(device, "shadow map", (side, side), DEPTH, 1, wgpu::TextureUsages::TEXTURE_BINDING)
-            .create_view(&wgpu::TextureViewDescriptor::default());
+        let shadow_map = texture(
+            device,
+            "shadow map",
+            (side, side),
+            DEPTH,
+            1,
+            wgpu::TextureUsages::TEXTURE_BINDING,
+        )
+        .create_view(&wgpu::TextureViewDescriptor::default());
         let compare = device.create_sampler(&wgpu::SamplerDescriptor {
             label: Some("shadow"),
             compare: Some(wgpu::CompareFunction::LessEqual),
@@ -147,7 +175,10 @@ impl Renderer {
         let shadow_group = group(
             device,
             &layouts.shadow,
-            &[wgpu::BindingResource::TextureView(&shadow_map), wgpu::BindingResource::Sampler(&compare)],
+            &[
+                wgpu::BindingResource::TextureView(&shadow_map),
+                wgpu::BindingResource::Sampler(&compare),
+            ],
         );
 
         let skin_maps = maps::skin::paint(head, detail.map_width as usize);
@@ -159,13 +190,25 @@ impl Renderer {
             label: Some("maps"),
             mag_filter: wgpu::FilterMode::Linear,
             min_filter: wgpu::FilterMode::Linear,
-            mipmap_filter: if detail.anisotropy > 1 { wgpu::MipmapFilterMode::Linear } else { wgpu::MipmapFilterMode::Nearest },
+            mipmap_filter: if detail.anisotropy > 1 {
+                wgpu::MipmapFilterMode::Linear
+            } else {
+                wgpu::MipmapFilterMode::Nearest
+            },
             anisotropy_clamp: detail.anisotropy,
             ..Default::default()
         });
         let maps_group = |first, second| {
             let view = wgpu::BindingResource::TextureView;
-            group(device, &layouts.maps, &[wgpu::BindingResource::Sampler(&sampler), view(first), view(second)])
+            group(
+                device,
+                &layouts.maps,
+                &[
+                    wgpu::BindingResource::Sampler(&sampler),
+                    view(first),
+                    view(second),
+                ],
+            )
         };
         let (skin_maps, eye_maps, hair_maps) = (
             maps_group(&colour_map, &detail_map),
@@ -224,7 +267,9 @@ impl Renderer {
     ) -> Result<(), RenderError> {
         let mut encoder = gpu
             .device()
-            .create_command_encoder(&wgpu::CommandEncoderDescriptor { label: Some("picture") });
+            .create_command_encoder(&wgpu::CommandEncoderDescriptor {
+                label: Some("picture"),
+            });
         self.encode(gpu, &mut encoder, key_frame, view, target, size)?;
         gpu.queue().submit([encoder.finish()]);
         Ok(())
@@ -255,22 +300,38 @@ impl Renderer {
             self.targets = Some(Targets::new(gpu.device(), size, self.format, self.samples));
         }
         self.skin.set(&key_frame.skin);
+        gpu.queue().write_buffer(
+            &self.skin_moving,
+            0,
+            bytemuck::cast_slice::<SkinMoving, u8>(&self.skin.moving),
+        );
+        let open = self.openings.measure(&key_frame.skin);
+        let frame = self.frame_data(key_frame, view, size, &open);
         gpu.queue()
-            .write_buffer(&self.skin_moving, 0, bytemuck::cast_slice::<SkinMoving, u8>(&self.skin.moving));
-        let frame = self.frame_data(key_frame, view, size);
-        gpu.queue().write_buffer(&self.frame, 0, bytemuck::bytes_of(&frame));
+            .write_buffer(&self.frame, 0, bytemuck::bytes_of(&frame));
         self.shadow_pass(encoder);
         if let Some(targets) = &self.targets {
-            self.picture_pass(encoder, targets, target, view);
+            self.picture_pass(
+                encoder,
+                targets,
+                target,
+                view,
+                open.mouth_half_height > SHUT_MM,
+            );
         }
         Ok(())
     }
 
-    fn frame_data(&self, key_frame: &KeyFrame, view: &View, size: (u32, u32)) -> Frame {
+    fn frame_data(
+        &self,
+        key_frame: &KeyFrame,
+        view: &View,
+        size: (u32, u32),
+        open: &Open,
+    ) -> Frame {
         let framing = self.extent.frame(view.camera, size);
         let studio = Studio::portrait(view.camera.yaw_rad());
         let bodies = self.pose.bodies(&key_frame.state).map(Mat4::from);
-        let open = self.openings.measure(&key_frame.skin);
         let radius = self.pose.eye_radius;
         let eye = self.pose.eye_centre;
         let mut body_rows = [Mat4::IDENTITY.to_cols_array_2d(); 8];
@@ -301,12 +362,15 @@ impl Renderer {
             mouth_height: [open.mouth_half_height, 0.0, 0.0, 0.0],
             eyeballs: [eye, eye * Vec3::new(-1.0, 1.0, 1.0)].map(|c| c.extend(radius).to_array()),
             lids: open.lids.map(|lid| lid.to_array()),
-            backdrop: [middle.extend(width / height).to_array(), corner.extend(0.0).to_array()],
+            backdrop: [
+                middle.extend(width / height).to_array(),
+                corner.extend(0.0).to_array(),
+            ],
             picture: [width, height, FLASH_SHARE, 0.0],
         }
     }
 
-    /// Depth from the key lamp: the skin and the hair cast shadows.
+    /// Depth from the key lamp: the skin casts shadows; the hair's would fall on the scalp.
     fn shadow_pass(&self, encoder: &mut wgpu::CommandEncoder) {
         let mut pass = encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
             label: Some("shadow"),
@@ -315,10 +379,6 @@ impl Renderer {
         });
         pass.set_bind_group(0, &self.frame_group, &[]);
         self.draw_skin(&mut pass, &self.pipelines.skin_shadow);
-        pass.set_pipeline(&self.pipelines.part_shadow);
-        for (_, buffers) in self.parts.iter().filter(|(m, _)| *m == Material::Hair) {
-            draw_part(&mut pass, buffers, 1);
-        }
     }
 
     fn picture_pass(
@@ -327,6 +387,7 @@ impl Renderer {
         targets: &Targets,
         target: &wgpu::TextureView,
         view: &View,
+        mouth_open: bool,
     ) {
         let mut pass = encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
             label: Some("picture"),
@@ -336,7 +397,11 @@ impl Renderer {
                 resolve_target: targets.colour.as_ref().map(|_| target),
                 ops: wgpu::Operations {
                     load: wgpu::LoadOp::Clear(wgpu::Color::BLACK),
-                    store: if targets.colour.is_some() { wgpu::StoreOp::Discard } else { wgpu::StoreOp::Store },
+                    store: if targets.colour.is_some() {
+                        wgpu::StoreOp::Discard
+                    } else {
+                        wgpu::StoreOp::Store
+                    },
                 },
             })],
             depth_stencil_attachment: Some(clear_depth(&targets.depth, wgpu::StoreOp::Discard)),
@@ -349,7 +414,8 @@ impl Renderer {
         }
         pass.set_bind_group(2, &self.skin_maps, &[]);
         self.draw_skin(&mut pass, &self.pipelines.skin);
-        for (material, buffers) in self.parts.iter().filter(|(m, _)| *m != Material::Hair) {
+        let drawn = |m: Material| m != Material::Hair && (mouth_open || !in_mouth(m));
+        for (material, buffers) in self.parts.iter().filter(|(m, _)| drawn(*m)) {
             self.draw_material(&mut pass, *material, buffers);
         }
         pass.set_pipeline(&self.pipelines.backdrop);
@@ -368,7 +434,12 @@ impl Renderer {
         pass.draw_indexed(0..self.skin.indices.len() as u32, 0, 0..1);
     }
 
-    fn draw_material(&self, pass: &mut wgpu::RenderPass<'_>, material: Material, buffers: &PartBuffers) {
+    fn draw_material(
+        &self,
+        pass: &mut wgpu::RenderPass<'_>,
+        material: Material,
+        buffers: &PartBuffers,
+    ) {
         let p = &self.pipelines;
         let (pipeline, maps, instances) = match material {
             Material::Hair => (&p.hair, Some(&self.hair_maps), self.detail.hair_shells),
@@ -401,13 +472,26 @@ const DRAW_ORDER: [Material; 8] = [
     Material::Cavity,
 ];
 
+/// Half a gap between the lips that is no gap, mm: nothing of the mouth's inside is drawn then.
+const SHUT_MM: f32 = 0.02;
+
+fn in_mouth(material: Material) -> bool {
+    matches!(
+        material,
+        Material::Teeth | Material::Gums | Material::Tongue | Material::Cavity
+    )
+}
+
 fn draw_part(pass: &mut wgpu::RenderPass<'_>, buffers: &PartBuffers, instances: u32) {
     pass.set_vertex_buffer(0, buffers.vertices.slice(..));
     pass.set_index_buffer(buffers.indices.slice(..), wgpu::IndexFormat::Uint32);
     pass.draw_indexed(0..buffers.count, 0, 0..instances);
 }
 
-fn clear_depth(view: &wgpu::TextureView, store: wgpu::StoreOp) -> wgpu::RenderPassDepthStencilAttachment<'_> {
+fn clear_depth(
+    view: &wgpu::TextureView,
+    store: wgpu::StoreOp,
+) -> wgpu::RenderPassDepthStencilAttachment<'_> {
     wgpu::RenderPassDepthStencilAttachment {
         view,
         depth_ops: Some(wgpu::Operations {
@@ -418,7 +502,11 @@ fn clear_depth(view: &wgpu::TextureView, store: wgpu::StoreOp) -> wgpu::RenderPa
     }
 }
 
-fn group(device: &wgpu::Device, layout: &wgpu::BindGroupLayout, resources: &[wgpu::BindingResource<'_>]) -> wgpu::BindGroup {
+fn group(
+    device: &wgpu::Device,
+    layout: &wgpu::BindGroupLayout,
+    resources: &[wgpu::BindingResource<'_>],
+) -> wgpu::BindGroup {
     let entries: Vec<wgpu::BindGroupEntry<'_>> = resources
         .iter()
         .enumerate()

@@ -30,8 +30,18 @@ const FILES: &[(&str, &str)] = &[
 /// The files that pipelines are made of; the others are only included.
 #[cfg(test)]
 pub(crate) const ENTRY_FILES: &[&str] = &[
-    "background", "cavity", "cloth", "eye", "flash", "gums", "hair", "lash", "shadow", "skin",
-    "teeth", "tongue",
+    "background",
+    "cavity",
+    "cloth",
+    "eye",
+    "flash",
+    "gums",
+    "hair",
+    "lash",
+    "shadow",
+    "skin",
+    "teeth",
+    "tongue",
 ];
 
 /// A mistake in the shader files themselves.
@@ -122,12 +132,16 @@ mod tests {
             .validate(&module)
             .unwrap();
             for taps in [1.0, 4.0, 9.0] {
-                let constants: naga::back::PipelineConstants =
-                    [("SHADOW_TAPS".to_owned(), taps)].into_iter().filter(|(n, _)| text.contains(n)).collect();
+                let constants: naga::back::PipelineConstants = [("SHADOW_TAPS".to_owned(), taps)]
+                    .into_iter()
+                    .filter(|(n, _)| text.contains(n))
+                    .collect();
                 for entry in &module.entry_points {
                     let stage = Some((entry.stage, entry.name.as_str()));
-                    naga::back::pipeline_constants::process_overrides(&module, &info, stage, &constants)
-                        .unwrap_or_else(|e| panic!("{name}, {}: {e:?}", entry.name));
+                    naga::back::pipeline_constants::process_overrides(
+                        &module, &info, stage, &constants,
+                    )
+                    .unwrap_or_else(|e| panic!("{name}, {}: {e:?}", entry.name));
                 }
             }
         }
@@ -146,10 +160,17 @@ mod tests {
 
     #[test]
     fn a_file_included_twice_is_taken_once_and_a_missing_one_is_named() {
-        let files = [("a", "#include \"b\"\n#include \"c\"\nA"), ("b", "#include \"c\"\nB"), ("c", "C")];
+        let files = [
+            ("a", "#include \"b\"\n#include \"c\"\nA"),
+            ("b", "#include \"c\"\nB"),
+            ("c", "C"),
+        ];
         assert_eq!(resolve_in(&files, "a").unwrap(), "C\nB\nA\n");
         let broken = [("a", "#include \"z\"")];
         let error = resolve_in(&broken, "a").unwrap_err();
-        assert_eq!(error.to_string(), "shaders/a.wgsl includes \"z\", but there is no shaders/z.wgsl");
+        assert_eq!(
+            error.to_string(),
+            "shaders/a.wgsl includes \"z\", but there is no shaders/z.wgsl"
+        );
     }
 }

@@ -58,11 +58,11 @@ impl Studio {
             (forward + Vec3::Y * upward[c]).extend(level[c])
         };
         Self {
-            key: lamp(-38.0, 34.0, vec3(1.52, 1.40, 1.25), 0.30),
+            key: lamp(-38.0, 34.0, vec3(1.62, 1.44, 1.30), 0.30),
             fill: lamp(52.0, 6.0, vec3(0.40, 0.43, 0.48), 0.42),
             rim: lamp(148.0, 28.0, vec3(0.95, 0.98, 1.05), 0.25),
             ambient: [row(0), row(1), row(2)],
-            exposure: 0.72,
+            exposure: 0.76,
         }
     }
 
@@ -71,7 +71,13 @@ impl Studio {
         let centre = (extent.min + extent.max) * 0.5;
         let radius = (extent.max - extent.min).length() * 0.5 * 0.94;
         let from = centre + self.key.direction * (radius * 2.0);
-        rh::proj::directx::orthographic(-radius, radius, -radius, radius, radius * 0.5, radius * 3.5)
-            * rh::view::look_at_mat4(from, centre, Vec3::Y)
+        rh::proj::directx::orthographic(
+            -radius,
+            radius,
+            -radius,
+            radius,
+            radius * 0.5,
+            radius * 3.5,
+        ) * rh::view::look_at_mat4(from, centre, Vec3::Y)
     }
 }

@@ -21,8 +21,15 @@ impl Targets {
         samples: u32,
     ) -> Self {
         let view = |label, format| {
-            texture(device, label, size, format, samples, wgpu::TextureUsages::empty())
-                .create_view(&wgpu::TextureViewDescriptor::default())
+            texture(
+                device,
+                label,
+                size,
+                format,
+                samples,
+                wgpu::TextureUsages::empty(),
+            )
+            .create_view(&wgpu::TextureViewDescriptor::default())
         };
         Self {
             size,

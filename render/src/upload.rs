@@ -12,11 +12,12 @@ pub(crate) fn buffer<T: bytemuck::NoUninit>(
     contents: &[T],
     usage: wgpu::BufferUsages,
 ) -> wgpu::Buffer {
-    gpu.device().create_buffer_init(&wgpu::util::BufferInitDescriptor {
-        label: Some(label),
-        contents: bytemuck::cast_slice(contents),
-        usage,
-    })
+    gpu.device()
+        .create_buffer_init(&wgpu::util::BufferInitDescriptor {
+            label: Some(label),
+            contents: bytemuck::cast_slice(contents),
+            usage,
+        })
 }
 
 /// An image of plain bytes, with all its halvings.

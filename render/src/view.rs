@@ -135,9 +135,17 @@ impl Extent {
             .map(|(p, _)| p.y)
             .fold(f32::INFINITY, f32::min);
         let chin = if chin.is_finite() { chin } else { -80.0 };
-        skin.mesh.positions.iter().filter(|p| p.y >= chin).for_each(|p| take(*p));
+        skin.mesh
+            .positions
+            .iter()
+            .filter(|p| p.y >= chin)
+            .for_each(|p| take(*p));
         for part in head.parts.iter().filter(|p| p.material == Material::Hair) {
-            part.mesh.positions.iter().filter(|p| p.y >= chin).for_each(|p| take(*p));
+            part.mesh
+                .positions
+                .iter()
+                .filter(|p| p.y >= chin)
+                .for_each(|p| take(*p));
         }
         if min.is_finite() && max.is_finite() {
             Self { min, max }

@@ -23,7 +23,8 @@ pub enum Outcome {
     Retry,
 }
 
-type MakeSurface = Box<dyn Fn(&wgpu::Instance) -> Result<wgpu::Surface<'static>, wgpu::CreateSurfaceError> + Send>;
+type MakeSurface =
+    Box<dyn Fn(&wgpu::Instance) -> Result<wgpu::Surface<'static>, wgpu::CreateSurfaceError> + Send>;
 
 /// A window that heads are drawn to.
 pub struct WindowTarget {
@@ -40,7 +41,10 @@ pub struct WindowTarget {
 
 impl std::fmt::Debug for WindowTarget {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        f.debug_struct("WindowTarget").field("gpu", &self.gpu).field("size", &self.size).finish_non_exhaustive()
+        f.debug_struct("WindowTarget")
+            .field("gpu", &self.gpu)
+            .field("size", &self.size)
+            .finish_non_exhaustive()
     }
 }
 
@@ -60,17 +64,24 @@ impl WindowTarget {
     ///
     /// # Errors
     /// When no adapter can draw to this window.
-    pub fn new<W>(window: Arc<W>, size: (u32, u32), head: &Head, tier: Tier) -> Result<Self, WindowError>
+    pub fn new<W>(
+        window: Arc<W>,
+        size: (u32, u32),
+        head: &Head,
+        tier: Tier,
+    ) -> Result<Self, WindowError>
     where
         W: HasWindowHandle + HasDisplayHandle + std::fmt::Debug + Send + Sync + 'static,
     {
-        let mut descriptor =
-            wgpu::InstanceDescriptor::new_with_display_handle_from_env(Box::new(Arc::clone(&window)));
+        let mut descriptor = wgpu::InstanceDescriptor::new_with_display_handle_from_env(Box::new(
+            Arc::clone(&window),
+        ));
         if wgpu::Backends::from_env().is_none() {
             descriptor.backends = wgpu::Backends::PRIMARY | wgpu::Backends::GL;
         }
         let instance = wgpu::Instance::new(descriptor);
-        let make_surface: MakeSurface = Box::new(move |instance| instance.create_surface(Arc::clone(&window)));
+        let make_surface: MakeSurface =
+            Box::new(move |instance| instance.create_surface(Arc::clone(&window)));
         let surface = make_surface(&instance).map_err(GpuError::Surface)?;
         let gpu = Gpu::for_window(&instance, &surface)?;
         let config = configuration(&gpu, &surface)?;
@@ -130,14 +141,18 @@ impl WindowTarget {
             }
             Acquired::Lost => {
                 tracing::warn!("the window's surface was lost; making a new one");
-                self.surface = (self.make_surface)(self.gpu.instance()).map_err(GpuError::Surface)?;
+                self.surface =
+                    (self.make_surface)(self.gpu.instance()).map_err(GpuError::Surface)?;
                 self.surface.configure(self.gpu.device(), &self.config);
                 return Ok(Outcome::Retry);
             }
         };
-        let target = texture.texture.create_view(&wgpu::TextureViewDescriptor::default());
+        let target = texture
+            .texture
+            .create_view(&wgpu::TextureViewDescriptor::default());
         let size = (texture.texture.width(), texture.texture.height());
-        self.renderer.draw(&self.gpu, key_frame, view, &target, size)?;
+        self.renderer
+            .draw(&self.gpu, key_frame, view, &target, size)?;
         self.gpu.queue().present(texture);
         if stale {
             self.surface.configure(self.gpu.device(), &self.config);
@@ -148,15 +163,23 @@ impl WindowTarget {
 
 /// The surface's best settings: plain bytes (the shaders give sRGB values) if they are offered, in step with the screen, no queue of
 /// old pictures.
-fn configuration(gpu: &Gpu, surface: &wgpu::Surface<'_>) -> Result<wgpu::SurfaceConfiguration, GpuError> {
+fn configuration(
+    gpu: &Gpu,
+    surface: &wgpu::Surface<'_>,
+) -> Result<wgpu::SurfaceConfiguration, GpuError> {
     let unsupported = || GpuError::UnsupportedSurface {
         adapter: gpu.info().name.clone(),
     };
-    let mut config = surface.get_default_config(gpu.adapter(), 1, 1).ok_or_else(unsupported)?;
+    let mut config = surface
+        .get_default_config(gpu.adapter(), 1, 1)
+        .ok_or_else(unsupported)?;
     let formats = surface.get_capabilities(gpu.adapter()).formats;
     let eight_bit = |f: &wgpu::TextureFormat| {
         use wgpu::TextureFormat as F;
-        matches!(f, F::Bgra8UnormSrgb | F::Rgba8UnormSrgb | F::Bgra8Unorm | F::Rgba8Unorm)
+        matches!(
+            f,
+            F::Bgra8UnormSrgb | F::Rgba8UnormSrgb | F::Bgra8Unorm | F::Rgba8Unorm
+        )
     };
     config.format = formats
         .iter()

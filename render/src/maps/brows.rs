@@ -11,12 +11,15 @@ use super::strokes::{Blend, Field, Stroke};
 use super::{CHART_HEIGHT, WINDOW_MAX, WINDOW_MIN, ramp};
 
 /// Hairs in one brow.
-const HAIRS: usize = 620;
+const HAIRS: usize = 760;
 
 /// How much hair covers each texel, 0..1.
 pub(crate) fn paint(head: &Head, ground: &Ground, width: usize, height: usize) -> Field {
     let mut field = Field::new(width, height, 0.0);
-    for (lower, upper, seed) in [("brow_lower_l", "brow_upper_l", 1), ("brow_lower_r", "brow_upper_r", 2)] {
+    for (lower, upper, seed) in [
+        ("brow_lower_l", "brow_upper_l", 1),
+        ("brow_lower_r", "brow_upper_r", 2),
+    ] {
         if let (Some(lower), Some(upper)) = (head.feature(lower), head.feature(upper)) {
             brow(&mut field, &Arch::new(lower, upper, ground), seed);
         }
@@ -52,10 +55,15 @@ impl Arch {
         // How far from the axis the skin is here decides what a mm of longitude is.
         let middle = at_share(&lower, 0.5);
         let cell = |v: f32, n: usize| ((v * n as f32) as usize).min(n - 1);
-        let place = ground.cells[cell(middle.y, ground.height) * ground.width + cell(middle.x, ground.width)].0;
+        let place = ground.cells
+            [cell(middle.y, ground.height) * ground.width + cell(middle.x, ground.width)]
+        .0;
         let radius = vec2(place.x, place.z - 10.0).length().clamp(50.0, 150.0);
         let span = WINDOW_MAX - WINDOW_MIN;
-        let per_mm = vec2(1.0 / (span.x * std::f32::consts::TAU * radius), 1.0 / (span.y * CHART_HEIGHT));
+        let per_mm = vec2(
+            1.0 / (span.x * std::f32::consts::TAU * radius),
+            1.0 / (span.y * CHART_HEIGHT),
+        );
         Self {
             lower,
             upper,
@@ -80,7 +88,7 @@ fn brow(field: &mut Field, arch: &Arch, seed: u64) {
     };
     let mut dice = Dice::new(seed);
     for _ in 0..HAIRS {
-        let along = dice.roll().powf(0.92) * 0.97;
+        let along = dice.roll().powf(0.92) * 0.93;
         // Denser in the body than at its borders; the ends thin out.
         let across = 0.5 + 0.56 * dice.spread();
         let end = ramp(0.0, 0.10, along) * ramp(1.0, 0.72, along);
@@ -97,14 +105,15 @@ fn brow(field: &mut Field, arch: &Arch, seed: u64) {
         let rise = (1.1 - 2.4 * along).max(0.0) + 0.55 * (0.62 - across) + 0.16 * dice.spread();
         let direction = (ahead + vec2(0.0, -rise)).normalize_or_zero();
         let bend = (ahead + vec2(0.0, 0.25 * (across - 0.45))).normalize_or_zero();
-        let length_mm = (4.6 + 3.2 * dice.roll()) * (0.62 + 0.38 * end) * if across < 0.0 { 0.7 } else { 1.0 };
+        let length_mm =
+            (4.6 + 3.2 * dice.roll()) * (0.62 + 0.38 * end) * if across < 0.0 { 0.7 } else { 1.0 };
         let middle = root + direction * arch.per_mm * (length_mm * 0.5);
         let tip = middle + (direction * 0.45 + bend * 0.55) * arch.per_mm * (length_mm * 0.5);
         field.draw(
             &Stroke {
                 points: [root, middle, tip],
                 half_width: (0.13 + 0.05 * dice.roll()) * arch.per_mm.x,
-                strength: (0.52 + 0.40 * dice.roll()) * (0.55 + 0.45 * end),
+                strength: (0.58 + 0.40 * dice.roll()) * (0.55 + 0.45 * end),
             },
             Blend::Cover,
         );
@@ -125,7 +134,7 @@ fn under_shade(field: &mut Field, arch: &Arch) {
             &Stroke {
                 points: [middle - ahead * 2.0, middle, middle + ahead * 3.0],
                 half_width: 0.75 * arch.per_mm.x,
-                strength: 0.30 * end,
+                strength: 0.36 * end,
             },
             Blend::Cover,
         );

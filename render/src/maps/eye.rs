@@ -11,7 +11,7 @@ use super::{parallel_rows, ramp};
 /// Iris radii from the middle of the map to its side. Keep in step with shaders/eye.wgsl.
 const REACH: f32 = 3.0;
 /// Radius of the pupil in iris radii: that of a lit room.
-const PUPIL: f32 = 0.36;
+const PUPIL: f32 = 0.39;
 
 /// Square root of linear colour; a: 1 in the iris, 0 in the white.
 pub(crate) fn paint(side: usize) -> Image {
@@ -24,7 +24,11 @@ pub(crate) fn paint(side: usize) -> Image {
             let r = at.length();
             let white = sclera(at, veins.values[y * side + x]);
             let share = ramp(1.07, 0.94, r);
-            let colour = if share > 0.0 { white.lerp(iris(at, r), share) } else { white };
+            let colour = if share > 0.0 {
+                white.lerp(iris(at, r), share)
+            } else {
+                white
+            };
             *texel = [
                 root_of_linear(colour.x),
                 root_of_linear(colour.y),
@@ -39,7 +43,7 @@ pub(crate) fn paint(side: usize) -> Image {
 fn sclera(at: Vec2, vein: f32) -> Vec3 {
     let corner = ramp(1.25, 2.9, at.x.abs());
     let cloud = fractal(at.x * 2.2 + 9.0, at.y * 2.2, 3) - 0.5;
-    let white = vec3(0.855, 0.835, 0.815).lerp(vec3(0.81, 0.665, 0.625), corner * 0.75);
+    let white = vec3(0.775, 0.742, 0.722).lerp(vec3(0.725, 0.560, 0.520), corner * 0.75);
     let white = white * (1.0 + 0.05 * cloud);
     white.lerp(vec3(0.72, 0.36, 0.33), vein * (0.10 + 0.45 * corner))
 }
@@ -55,15 +59,18 @@ fn iris(at: Vec2, r: f32) -> Vec3 {
         first + (joined - first) * ramp(count - 1.0, count, wrapped)
     };
     let strand = 0.55 * fibre(90.0, 5) + 0.45 * fibre(41.0, 6);
-    let outer = vec3(0.355, 0.415, 0.375).lerp(vec3(0.545, 0.590, 0.500), strand);
-    let inner = vec3(0.47, 0.345, 0.19).lerp(vec3(0.66, 0.52, 0.30), strand);
+    let outer = vec3(0.265, 0.265, 0.205).lerp(vec3(0.455, 0.435, 0.325), strand);
+    let inner = vec3(0.36, 0.225, 0.105).lerp(vec3(0.56, 0.39, 0.20), strand);
     let collar = 0.52 + 0.07 * (fibre(17.0, 8) - 0.5);
     let mut c = outer.lerp(inner, ramp(collar + 0.14, collar - 0.10, r) * 0.85);
     c *= 0.86 + 0.28 * ramp(0.38, 0.75, r);
     // Limbal ring, then the pupil with its dark rim.
     c *= 1.0 - 0.72 * ramp(0.76, 0.99, r);
     c *= 1.0 - 0.35 * ramp(PUPIL + 0.07, PUPIL, r);
-    c.lerp(vec3(0.022, 0.018, 0.018), ramp(PUPIL + 0.03, PUPIL - 0.02, r))
+    c.lerp(
+        vec3(0.022, 0.018, 0.018),
+        ramp(PUPIL + 0.03, PUPIL - 0.02, r),
+    )
 }
 
 /// Veins that wander from the corners towards the iris and thin out.

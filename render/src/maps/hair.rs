@@ -5,8 +5,8 @@ use glam::{Vec2, Vec3, vec2, vec3};
 
 use super::image::Image;
 use super::noise::{Dice, value};
-use super::strokes::{Blend, Field, Stroke};
 use super::parallel_rows;
+use super::strokes::{Blend, Field, Stroke};
 
 /// Where the strands part from. Keep in step with shaders/hair.wgsl.
 const CROWN: Vec3 = vec3(0.0, 145.0, -35.0);
@@ -54,7 +54,11 @@ pub(crate) fn paint(side: usize) -> Image {
             (&mut height, 0.30 + 0.70 * dice.roll()),
             (&mut shift, dice.roll()),
         ] {
-            let stroke = Stroke { points, half_width: half_width.max(0.45), strength };
+            let stroke = Stroke {
+                points,
+                half_width: half_width.max(0.45),
+                strength,
+            };
             field.draw(&stroke, Blend::Over);
         }
     }
@@ -63,7 +67,12 @@ pub(crate) fn paint(side: usize) -> Image {
         for (x, texel) in row.iter_mut().enumerate() {
             let at = y * side + x;
             let byte = |v: f32| (v.clamp(0.0, 1.0) * 255.0) as u8;
-            *texel = [byte(tone.values[at]), byte(height.values[at]), byte(shift.values[at]), 255];
+            *texel = [
+                byte(tone.values[at]),
+                byte(height.values[at]),
+                byte(shift.values[at]),
+                255,
+            ];
         }
     });
     image

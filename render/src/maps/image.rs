@@ -38,7 +38,12 @@ impl Image {
             let upper = &source[2 * y * self.width..];
             let lower = &source[(2 * y + dy) * self.width..];
             for (x, texel) in row.iter_mut().enumerate() {
-                let four = [upper[2 * x], upper[2 * x + dx], lower[2 * x], lower[2 * x + dx]];
+                let four = [
+                    upper[2 * x],
+                    upper[2 * x + dx],
+                    lower[2 * x],
+                    lower[2 * x + dx],
+                ];
                 *texel = std::array::from_fn(|c| {
                     let sum: u16 = four.iter().map(|t| u16::from(t[c])).sum();
                     ((sum + 2) / 4) as u8
@@ -57,5 +62,7 @@ pub(crate) fn root_of_linear(value: f32) -> u8 {
 
 /// [`root_of_linear`] as a table of 1024 steps.
 pub(crate) fn root_table() -> Vec<u8> {
-    (0..1024).map(|i| root_of_linear(i as f32 / 1023.0)).collect()
+    (0..1024)
+        .map(|i| root_of_linear(i as f32 / 1023.0))
+        .collect()
 }

@@ -132,7 +132,11 @@ impl Ground {
             if *deep < 0.0 {
                 let uv = self.uv(at % self.width, at / self.width);
                 let turn = (uv.x - 0.5) * std::f32::consts::TAU;
-                let place = vec3(super::RADIUS * turn.sin(), 150.0 - 256.0 * uv.y, 10.0 + super::RADIUS * turn.cos());
+                let place = vec3(
+                    super::RADIUS * turn.sin(),
+                    150.0 - 256.0 * uv.y,
+                    10.0 + super::RADIUS * turn.cos(),
+                );
                 self.cells[at] = (place, 0.0);
             }
         }
@@ -140,7 +144,10 @@ impl Ground {
 
     /// Chart coordinates of the middle of a cell.
     pub(crate) fn uv(&self, x: usize, y: usize) -> Vec2 {
-        let share = vec2((x as f32 + 0.5) / self.width as f32, (y as f32 + 0.5) / self.height as f32);
+        let share = vec2(
+            (x as f32 + 0.5) / self.width as f32,
+            (y as f32 + 0.5) / self.height as f32,
+        );
         WINDOW_MIN + share * (WINDOW_MAX - WINDOW_MIN)
     }
 }

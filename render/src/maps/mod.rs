@@ -11,6 +11,7 @@
 pub(crate) mod brows;
 pub(crate) mod eye;
 pub(crate) mod hair;
+pub(crate) mod hairline;
 pub(crate) mod image;
 pub(crate) mod landmarks;
 pub(crate) mod noise;
@@ -29,11 +30,20 @@ pub(crate) const RADIUS: f32 = 92.0;
 pub(crate) const CHART_HEIGHT: f32 = 256.0;
 
 /// Runs `paint(row number, row)` over all rows, on as many threads as there are cores, up to 4.
-pub(crate) fn parallel_rows<T: Send>(values: &mut [T], width: usize, paint: impl Fn(usize, &mut [T]) + Sync) {
+pub(crate) fn parallel_rows<T: Send>(
+    values: &mut [T],
+    width: usize,
+    paint: impl Fn(usize, &mut [T]) + Sync,
+) {
     let height = values.len() / width.max(1);
-    let cores = std::thread::available_parallelism().map_or(1, usize::from).min(4);
+    let cores = std::thread::available_parallelism()
+        .map_or(1, usize::from)
+        .min(4);
     if height < 64 || cores == 1 {
-        values.chunks_mut(width.max(1)).enumerate().for_each(|(y, row)| paint(y, row));
+        values
+            .chunks_mut(width.max(1))
+            .enumerate()
+            .for_each(|(y, row)| paint(y, row));
         return;
     }
     // Interleaved bands, since the rows of a face are unequal work.
@@ -54,7 +64,9 @@ pub(crate) fn parallel_rows<T: Send>(values: &mut [T], width: usize, paint: impl
     std::thread::scope(|scope| {
         for _ in 1..cores {
             // Where no thread is to be had the work is done here.
-            let _ = std::thread::Builder::new().name("paint maps".into()).spawn_scoped(scope, work);
+            let _ = std::thread::Builder::new()
+                .name("paint maps".into())
+                .spawn_scoped(scope, work);
         }
         work();
     });

@@ -28,7 +28,10 @@ pub(crate) fn value(x: f32, y: f32, seed: u32) -> f32 {
 
 /// Three octaves of [`value`], about 0..1.
 pub(crate) fn fractal(x: f32, y: f32, seed: u32) -> f32 {
-    (value(x, y, seed) * 4.0 + value(x * 2.1, y * 2.1, seed + 1) * 2.0 + value(x * 4.3, y * 4.3, seed + 2)) / 7.0
+    (value(x, y, seed) * 4.0
+        + value(x * 2.1, y * 2.1, seed + 1) * 2.0
+        + value(x * 4.3, y * 4.3, seed + 2))
+        / 7.0
 }
 
 /// Distances to the nearest and second nearest of points scattered one a cell of side 1.

@@ -42,14 +42,21 @@ impl Field {
     pub(crate) fn draw(&mut self, stroke: &Stroke, blend: Blend) {
         let [a, b, c] = stroke.points;
         let length = a.distance(b) + b.distance(c);
-        let steps = (length / (stroke.half_width * 1.2).clamp(0.5, 2.0)).ceil().clamp(1.0, 400.0) as usize;
+        let steps = (length / (stroke.half_width * 1.2).clamp(0.5, 2.0))
+            .ceil()
+            .clamp(1.0, 400.0) as usize;
         for i in 0..=steps {
             let t = i as f32 / steps as f32;
             let p = a.lerp(b, t).lerp(b.lerp(c, t), t);
             // Full at the root, thin at the tip.
             let taper = 1.0 - t * t * 0.85;
             let root = (t * 8.0).min(1.0);
-            self.dab(p, stroke.half_width * taper, stroke.strength * taper * (0.4 + 0.6 * root), blend);
+            self.dab(
+                p,
+                stroke.half_width * taper,
+                stroke.strength * taper * (0.4 + 0.6 * root),
+                blend,
+            );
         }
     }
 

@@ -7,6 +7,6 @@ fn cavity(in: MouthFragment, @builtin(front_facing) front: bool) -> @location(0)
     let n = normalize(select(-in.normal, in.normal, front));
     let depth = clamp((frame.mouth.z - in.head.z) / 45.0, 0.0, 1.0);
     let albedo = mix(vec3(0.26, 0.06, 0.055), vec3(0.07, 0.013, 0.012), depth);
-    let lit = ambient_from(n) * in.inside.x + 0.25 * frame.key_colour.rgb * in.inside.y * max(dot(n, frame.key_dir.xyz), 0.0);
+    let lit = (ambient_from(n) + 0.4 * frame.key_colour.rgb) * in.inside.x + 0.25 * frame.key_colour.rgb * in.inside.y * max(dot(n, frame.key_dir.xyz), 0.0);
     return developed(albedo * lit * in.inside.w);
 }

@@ -13,7 +13,7 @@ fn cloth_vertex(in: PartVertex) -> ClothFragment {
     let at = placed(in, 0.0);
     let n = normalize(at.normal);
     let v = normalize(frame.eye.xyz - at.world);
-    let albedo = vec3(0.043, 0.052, 0.068);
+    let albedo = vec3(0.040, 0.045, 0.054);
     let fuzz = albedo * ambient_from(n) * (grazing(dot(n, v)) * 0.5);
     var out: ClothFragment;
     out.clip = frame.clip_from_world * vec4(at.world, 1.0);

@@ -22,6 +22,8 @@ struct EyeFragment {
     // Light that multiplies the eye's colour: the key's, and the rest.
     @location(4) key: vec3<f32>,
     @location(5) soft: vec3<f32>,
+    // Above 0 in the subject's left eye.
+    @location(6) side: f32,
 }
 
 @vertex
@@ -40,6 +42,7 @@ fn eye_vertex(in: PartVertex) -> EyeFragment {
     out.world = at.world;
     out.normal = n;
     out.uv = in.uv;
+    out.side = head.x;
     out.lids = vec4(over, dot(frame.lids[side * 2u].xyz, poly), dot(frame.lids[side * 2u + 1u].xyz, poly));
     let visible = mix(key_visible(shadow_place(at.world, n)), 1.0, 0.25);
     let wrap = vec3(0.35, 0.25, 0.22);
@@ -56,14 +59,18 @@ fn lamp_mirrored(mirrored: vec3<f32>, lamp: vec4<f32>) -> f32 {
 
 @fragment
 fn eye(in: EyeFragment) -> @location(0) vec4<f32> {
-    let n = normalize(in.normal);
     let v = normalize(frame.eye.xyz - in.world);
     let r = length(in.uv);
     let bulge = 1.0 - smoothstep(0.85, 1.2, r);
+    // The eye's own axes: across, up and along its gaze.
+    let turn = frame.bodies[select(4u, 3u, in.side > 0.0)];
+    let axis_x = turn[0].xyz;
+    let axis_y = turn[1].xyz;
+    // The cornea as a sphere of 7.8 mm under an iris of 5.8 mm: smoother than the mesh could be.
+    let dome = normalize(turn[2].xyz + (axis_x * in.uv.x + axis_y * in.uv.y) * 0.74);
+    let n = normalize(mix(in.normal, dome, bulge));
 
     // Refraction: the iris lies behind the cornea, so it shifts against the eye's own motion.
-    let axis_x = normalize(cross(vec3(0.0, 1.0, 0.0), n));
-    let axis_y = cross(n, axis_x);
     let sight = vec2(dot(v, axis_x), dot(v, axis_y));
     let iris_uv = in.uv - sight * (0.22 * bulge * bulge);
     let texel = textureSample(eye_map, map_sampler, iris_uv * (0.5 / MAP_REACH) + 0.5);
@@ -72,9 +79,9 @@ fn eye(in: EyeFragment) -> @location(0) vec4<f32> {
     // Lids: shadow of the upper one, contact of both, dim corners.
     let upper = in.lids.z - in.lids.y;
     let lower = in.lids.y - in.lids.w;
-    let shade = mix(0.30, 1.0, smoothstep(-0.04, 0.34, upper));
-    let contact = mix(0.45, 1.0, smoothstep(-0.03, 0.10, min(upper, lower)));
-    let corner = 1.0 - 0.45 * smoothstep(0.55, 1.0, abs(in.lids.x));
+    let shade = mix(0.22, 1.0, smoothstep(-0.04, 0.30, upper));
+    let contact = mix(0.35, 1.0, smoothstep(-0.03, 0.14, min(upper, lower)));
+    let corner = 1.0 - 0.6 * smoothstep(0.35, 0.85, abs(in.lids.x));
     let sky = shade * contact * corner;
     // The iris is a dish lit from across: it brightens away from the lamp.
     let l = frame.key_dir.xyz;
@@ -83,11 +90,14 @@ fn eye(in: EyeFragment) -> @location(0) vec4<f32> {
 
     // What the wet surface mirrors: lamps, and the room at its edge.
     let mirrored = reflect(-v, n);
-    let seen = smoothstep(0.0, 0.08, upper) * smoothstep(0.0, 0.05, lower);
-    let lamps = lamp_mirrored(mirrored, frame.key_dir) * 0.85 * frame.key_colour.rgb
-        + lamp_mirrored(mirrored, frame.fill_dir) * 0.10 * frame.fill_colour.rgb;
+    let seen = smoothstep(-0.02, 0.04, upper) * smoothstep(0.0, 0.05, lower);
+    // The catch-light: the key lamp as portrait photographers place a second one, nearer the camera, so
+    // that the lid does not hide it.
+    let catch_dir = normalize(l * 0.62 + v);
+    let lamps = lamp_mirrored(mirrored, vec4(catch_dir, 0.18)) * 0.8 * frame.key_colour.rgb
+        + lamp_mirrored(mirrored, frame.fill_dir) * 0.08 * frame.fill_colour.rgb;
     let film = 0.025 + 0.55 * grazing(max(dot(n, v), 0.0));
-    light += lamps * (seen * mix(0.35, 1.0, bulge));
+    light += lamps * (seen * mix(0.15, 1.0, bulge));
     light += ambient_from(mirrored) * (film * sky);
     // A tear line along the lower lid.
     let tear = smoothstep(0.09, 0.05, lower) * smoothstep(0.0, 0.03, lower) * seen;

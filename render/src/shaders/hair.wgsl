@@ -36,8 +36,9 @@ fn strand_lobe(t: vec3<f32>, h: vec3<f32>, sharp: f32) -> f32 {
 @vertex
 fn hair_vertex(in: PartVertex, @builtin(instance_index) layer: u32) -> HairFragment {
     let height = f32(layer) / max(HAIR_LAYERS - 1.0, 1.0);
-    // At its edge the hair lies flat on the skin.
-    let at = placed(in, mix(ROOT, TIP, height) * in.shares.z);
+    // At its edge the hair lies flat on the skin, and the lowest layer stays near it for a while.
+    let edge = in.shares.z;
+    let at = placed(in, mix(ROOT, TIP, height) * edge - 5.0 * edge * (1.0 - edge) * (1.0 - height));
     let n = normalize(at.normal);
     let v = normalize(frame.eye.xyz - at.world);
     // Strands lie along the surface, away from the crown, and stand off it a little.
@@ -49,7 +50,7 @@ fn hair_vertex(in: PartVertex, @builtin(instance_index) layer: u32) -> HairFragm
     let facing = clamp(dot(n, l) * 0.7 + 0.3, 0.0, 1.0);
     let along = dot(t, l);
     let depth = mix(0.5, 1.0, height) * mix(in.shares.x, 1.0, 0.25);
-    let key = frame.key_colour.rgb * key_visible(shadow_place(at.world, n));
+    let key = frame.key_colour.rgb * key_visible_around(shadow_place(at.world, n));
     let rim_h = normalize(frame.rim_dir.xyz + v);
     let rim = frame.rim_colour.rgb * (max(dot(n, frame.rim_dir.xyz) + 0.2, 0.0) * depth);
 
@@ -60,7 +61,7 @@ fn hair_vertex(in: PartVertex, @builtin(instance_index) layer: u32) -> HairFragm
     out.body = (key * facing * (sqrt(max(1.0 - along * along, 0.0)) + 1.4 * strand_lobe(normalize(t - n * 0.25), h, 14.0))
         + frame.fill_colour.rgb * max(dot(n, frame.fill_dir.xyz) * 0.5 + 0.5, 0.0)
         + ambient_from(n)) * depth + rim * 0.6;
-    out.shine = key * (0.050 * strand_lobe(t, h, 40.0) * facing * depth) + rim * (0.05 * strand_lobe(t, rim_h, 24.0));
+    out.shine = key * (0.085 * strand_lobe(t, h, 40.0) * facing * depth) + rim * (0.05 * strand_lobe(t, rim_h, 24.0));
     return out;
 }
 
@@ -71,12 +72,12 @@ fn hair(in: HairFragment) -> @location(0) vec4<f32> {
     // Thins out towards the hairline and towards the tips.
     let reach = map.g - 0.55 * (1.0 - smoothstep(0.0, 0.5, edge));
     var cover = select(1.0, smoothstep(-0.10, 0.10, reach - in.layer.x * 0.92 - 0.02), in.layer.x > 0.0);
-    cover = min(cover, smoothstep(-0.12, 0.12, map.g + edge * 2.4 - 0.6));
+    cover = min(cover, smoothstep(-0.15, 0.15, map.g + edge * 7.0 - 0.75));
     // Without samples to cover, a strand is there or not.
     if cover < select(0.02, 0.5, SAMPLES == 1u) {
         discard;
     }
-    let base = vec3(0.043, 0.026, 0.017) * (0.40 + 1.2 * map.r);
+    let base = vec3(0.060, 0.036, 0.023) * (0.25 + 1.5 * map.r * map.r);
     let light = base * in.body + in.shine * (map.r * (0.5 + map.b));
     return vec4(developed(light).rgb, cover);
 }

@@ -21,23 +21,24 @@ fn shadow_read(at: vec2<f32>, depth: f32) -> f32 {
     return textureSampleCompareLevel(shadow_map, shadow_sampler, at, depth);
 }
 
-// Reach of the shadow's soft edge as a share of the map, so that tiers agree; of a turned square, which
-// is softer than a straight one for the same four reads.
-const SOFT_A: vec2<f32> = vec2(0.00374, 0.00146);
-const SOFT_B: vec2<f32> = vec2(-0.00146, 0.00374);
+// Step of the widest reads as a share of the map.
 const SOFT_STEP: f32 = 0.0042;
 
+// Each read is itself a smooth mean of four texels: at a texel's distance they join without steps. The
+// map is coarse on purpose: its texel is the softness of the lamp.
 fn shadow_of_four(place: vec3<f32>) -> f32 {
-    let sum = shadow_read(place.xy + SOFT_A, place.z) + shadow_read(place.xy - SOFT_A, place.z)
-        + shadow_read(place.xy + SOFT_B, place.z) + shadow_read(place.xy - SOFT_B, place.z);
+    let d = 0.6 / f32(textureDimensions(shadow_map).x);
+    let sum = shadow_read(place.xy + vec2(d, d), place.z) + shadow_read(place.xy + vec2(-d, d), place.z)
+        + shadow_read(place.xy + vec2(d, -d), place.z) + shadow_read(place.xy - vec2(d, d), place.z);
     return sum * 0.25;
 }
 
 fn shadow_of_nine(place: vec3<f32>) -> f32 {
+    let d = 1.3 / f32(textureDimensions(shadow_map).x);
     var sum = 0.0;
     for (var i = -1; i <= 1; i++) {
         for (var j = -1; j <= 1; j++) {
-            sum += shadow_read(place.xy + vec2(f32(i), f32(j)) * SOFT_STEP, place.z);
+            sum += shadow_read(place.xy + vec2(f32(i), f32(j)) * d, place.z);
         }
     }
     return sum / 9.0;
@@ -52,6 +53,17 @@ fn key_visible(place: vec3<f32>) -> f32 {
         return shadow_of_four(place);
     }
     return shadow_of_nine(place);
+}
+
+// The same, softer than the lamp is: for vertices too far apart to show its edge.
+fn key_visible_around(place: vec3<f32>) -> f32 {
+    var sum = 0.0;
+    for (var i = -2; i <= 2; i++) {
+        for (var j = -2; j <= 2; j++) {
+            sum += shadow_read(place.xy + vec2(f32(i), f32(j)) * (2.0 * SOFT_STEP), place.z);
+        }
+    }
+    return sum / 25.0;
 }
 
 // Ambient light from around a direction.
@@ -88,7 +100,7 @@ fn grazing(cosine: f32) -> f32 {
 
 // Light that a matte surface sends back, shadow included. For vertices.
 fn matte(albedo: vec3<f32>, n: vec3<f32>, world: vec3<f32>, occlusion: f32) -> vec3<f32> {
-    let key = frame.key_colour.rgb * key_visible(shadow_place(world, n));
+    let key = frame.key_colour.rgb * key_visible_around(shadow_place(world, n));
     let light = key * max(dot(n, frame.key_dir.xyz), 0.0)
         + frame.fill_colour.rgb * max(dot(n, frame.fill_dir.xyz) * 0.75 + 0.25, 0.0) * occlusion
         + frame.rim_colour.rgb * max(dot(n, frame.rim_dir.xyz), 0.0)

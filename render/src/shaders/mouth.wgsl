@@ -59,10 +59,11 @@ fn mouth_light(p: vec3<f32>, n: vec3<f32>) -> MouthLight {
     let d2 = dot(to, to) + 1.0;
     let inverse = inverseSqrt(d2);
     let area = PI * half.x * half.y;
-    let facing = clamp(dot(n, to) * inverse * 0.5 + 0.5, 0.0, 1.0);
-    let leaving = clamp(to.z * inverse, 0.0, 1.0);
+    // Wet walls pass light on, so that what faces away or stands aside is dim, not black.
+    let facing = clamp(dot(n, to) * inverse * 0.4 + 0.6, 0.0, 1.0);
+    let leaving = clamp(to.z * inverse * 0.8 + 0.2, 0.0, 1.0);
     var out: MouthLight;
-    out.sky = max(area * leaving * facing / (2.0 * PI * d2 + area), smoothstep(0.5, 3.0, -to.z) * 0.8);
+    out.sky = max(area * leaving * facing / (1.3 * d2 + area), smoothstep(0.5, 3.0, -to.z) * 0.8);
     out.key = through_lips(p, head_direction(frame.key_dir.xyz));
     out.fill = through_lips(p, head_direction(frame.fill_dir.xyz));
     return out;
@@ -78,11 +79,13 @@ fn wet_surface(in: MouthFragment, n: vec3<f32>, albedo: vec3<f32>, roughness: f3
     let fill = frame.fill_colour.rgb * inside.fill;
     var light = albedo * key * max((dot(n, frame.key_dir.xyz) + soft) * wrap, 0.0) * mix(occlusion, 1.0, 0.4);
     light += albedo * fill * max((dot(n, frame.fill_dir.xyz) + soft) * wrap, 0.0) * mix(occlusion, 1.0, 0.4);
-    light += albedo * ambient_from(n) * (inside.sky * occlusion);
+    // Through the opening come the room's light and what the lamps throw about.
+    let room = ambient_from(n) + 0.40 * frame.key_colour.rgb + 0.25 * frame.fill_colour.rgb;
+    light += albedo * room * (inside.sky * mix(occlusion, 1.0, 0.5));
     light += f0 * key * gloss(n, v, frame.key_dir.xyz, roughness);
     light += f0 * fill * gloss(n, v, frame.fill_dir.xyz, roughness);
     // The bright room mirrored in the wet film, stronger where the eye grazes it.
     let film = f0 + (0.5 - f0) * grazing(dot(n, v));
-    light += ambient_from(reflect(-v, n)) * (film * inside.sky);
+    light += (ambient_from(reflect(-v, n)) + 0.2 * frame.key_colour.rgb) * (film * inside.sky);
     return light;
 }

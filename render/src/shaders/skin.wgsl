@@ -69,7 +69,7 @@ fn skin_vertex(in: SkinVertex) -> SkinFragment {
     out.halfway = frame.key_dir.xyz + v;
     out.uv = (in.uv - WINDOW.xz) / (WINDOW.yw - WINDOW.xz);
     out.shadow = shadow_place(world, n);
-    out.soft = frame.fill_colour.rgb * scattered(vec3(f)) * mix(occlusion, 1.0, 0.35)
+    out.soft = frame.fill_colour.rgb * scattered(vec3(f)) * mix(occlusion, 1.0, 0.2)
         + frame.rim_colour.rgb * scattered(vec3(b)) * occlusion
         + around * (bounced(occlusion, SKIN) + 0.35 * edge * occlusion);
     // The room and the lamps mirrored in the skin's oil, and the down of the cheek at grazing sight.
@@ -97,18 +97,20 @@ fn skin(in: SkinFragment) -> @location(0) vec4<f32> {
     let wet = in.shares.y;
     var albedo = texel.rgb * texel.rgb;
     let tone = dot(albedo, vec3(0.78, 1.3, 0.52));
-    let lip = mix(vec3(0.42, 0.135, 0.118), vec3(0.29, 0.065, 0.06), wet) * tone;
+    let lip = mix(vec3(0.43, 0.125, 0.110), vec3(0.29, 0.065, 0.06), wet) * tone;
     albedo = mix(albedo, lip, red * 0.86);
     let oil = mix(detail.z, 0.62, red);
-    let roughness = mix(mix(0.60, 0.46, oil), mix(0.40, 0.22, wet), max(red * 0.8, wet));
+    let roughness = mix(mix(0.62, 0.49, oil), mix(0.40, 0.22, wet), max(red * 0.8, wet));
 
     let l = frame.key_dir.xyz;
     let smooth_cos = dot(in.normal, l);
     let bumped_cos = dot(n, l);
     // Near the terminator the wrapped light takes over from the shadow map, which only knows yes or no.
     let visible = mix(1.0, key_visible(in.shadow), smoothstep(-0.12, 0.22, smooth_cos));
+    // Into nostrils and between lips no lamp shines.
+    let reached = visible * smoothstep(0.05, 0.45, in.shares.z);
     // In the soft edge of a shadow red light has crept in under the skin.
-    let bleed = vec3(visible) + vec3(0.32, 0.04, 0.0) * (visible - visible * visible);
+    let bleed = vec3(reached) + vec3(0.32, 0.04, 0.0) * (visible - visible * visible);
     // Red light travels furthest, so it sees least of the bumps.
     let cosine = mix(vec3(bumped_cos), vec3(smooth_cos), vec3(0.75, 0.45, 0.35));
     var light = albedo * (frame.key_colour.rgb * scattered(cosine) * bleed + in.soft);
@@ -118,9 +120,9 @@ fn skin(in: SkinFragment) -> @location(0) vec4<f32> {
     let ndh = max(dot(n, h), 0.0);
     let ldh = dot(l, h);
     let lobes = 0.72 * gloss_lobe(ndh, ldh, roughness) + 0.28 * gloss_lobe(ndh, ldh, roughness * 0.58);
-    let strength = 0.028 * (0.35 + 1.5 * oil) * (0.35 + 0.65 * in.shares.z);
-    light += frame.key_colour.rgb * (strength * lobes * max(bumped_cos, 0.0) * visible);
-    light += in.added * (0.35 + 1.5 * oil);
+    let strength = 0.028 * (0.25 + 1.2 * oil) * (0.35 + 0.65 * in.shares.z);
+    light += frame.key_colour.rgb * (strength * lobes * max(bumped_cos, 0.0) * reached);
+    light += in.added * (0.25 + 1.2 * oil);
     // Light from behind shines red through ears and nostrils.
     light += vec3(0.55, 0.10, 0.05) * (texel.a * in.shares.w);
     return developed(light);
