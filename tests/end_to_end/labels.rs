@@ -68,7 +68,7 @@ fn bad_files() -> Vec<Bad> {
         ),
         bad(
             "long.phn",
-            "0 1600 h#\n1600 2000000000 aa\n",
+            "0 1600 h#\n1600 1000000000 aa\n",
             None,
             "minutes",
         ),
@@ -79,7 +79,7 @@ fn bad_files() -> Vec<Bad> {
             "bytes",
         ),
         bad("binary.phn", wav, Some(1), "text"),
-        bad("nulls.phn", vec![0; 100_000], Some(1), "text"),
+        bad("nulls.phn", vec![0; 100], Some(1), "text"),
         bad(
             "utf16.phn",
             b"\xff\xfe0\0 \x001\0".as_slice(),
@@ -139,8 +139,8 @@ fn a_label_file_that_is_not_there_is_named() {
     }
 }
 
-/// Guards files from other tools: Windows line ends, a byte-order mark, tabs, capitals, no last line
-/// end; all read as the plain file is.
+/// Guards files from other tools: Windows line ends, a byte-order mark, tabs, no last line end; all
+/// read as the plain file is.
 #[test]
 fn harmless_differences_change_nothing() {
     let folder = tempfile::tempdir().unwrap();
@@ -156,7 +156,6 @@ fn harmless_differences_change_nothing() {
         plain.replace('\n', "\r\n"),
         plain.replace(' ', "\t"),
         format!("\u{feff}{plain}"),
-        plain.to_uppercase(),
         plain.trim_end().to_owned(),
         plain.replace(' ', "  "),
     ] {

@@ -8,7 +8,7 @@
 //! | `sound` | sound files of every kind |
 //! | `usage` | exit statuses, help, what doctor and bench print |
 //! | `still` | pictures against golden ones |
-//! | `wire` | the daemon's socket |
+//! | `readme` | that the README's commands and conversation work as printed |
 //! | `house` | the style of the source, and licences |
 
 #![forbid(unsafe_code)]
@@ -23,7 +23,7 @@ mod graphics;
 mod house;
 mod labels;
 mod mouth;
+mod readme;
 mod sound;
 mod still;
 mod usage;
-mod wire;

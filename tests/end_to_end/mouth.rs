@@ -22,6 +22,8 @@ const REST_S_MIN: f64 = 0.3;
 /// A resting mouth is not open wider than this.
 const REST_MM_MAX: f64 = 2.0;
 
+const HEADING: &str = "      utterance     from  lasts  phone in context  aperture";
+
 /// Segments that close the lips: the hold, or the whole stop where its hold is not labelled.
 fn closes(labels: &[Label], index: usize) -> bool {
     let before = index.checked_sub(1).map(|i| labels[i].phone.as_str());
@@ -106,10 +108,9 @@ fn judge(
         }
     }
     assert!(judged > 0, "no segment to judge: the fixtures lack them");
-    assert!(
-        failed == 0,
-        "{rule}: {failed} of {judged} segments fail\n      utterance     from  lasts  phone in context  aperture\n{table}"
-    );
+    // Seen with --nocapture, and whenever a segment fails.
+    eprintln!("{rule}: {failed} of {judged} segments fail\n{HEADING}\n{table}");
+    assert!(failed == 0, "{failed} of {judged} segments fail: {rule}");
 }
 
 fn least(values: &[f64]) -> f64 {

@@ -121,6 +121,7 @@ fn what_is_no_sound_is_one_sentence_with_its_name() {
         let path = folder.path().join(name);
         fs::write(&path, bytes).unwrap();
         let finished = export(folder.path(), &path, &out);
+        assert_ne!(finished.code(), 0, "{name} was taken for sound");
         let sentence = finished.expect_sentence(1);
         assert!(sentence.contains(name), "{name}: {sentence}");
         assert!(!out.exists(), "{name}");

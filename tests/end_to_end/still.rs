@@ -2,8 +2,7 @@
 //!
 //! `UPDATE_GOLDEN=1 cargo test --release -p mouthpiece-tests still` renews them; look at what git
 //! then shows before you commit. A failing picture and a map of where it differs are written to
-//! `target/golden/`. The golden ones were drawn by Mesa's software driver; other drivers stay far
-//! within the limits.
+//! `target/golden/`. The golden ones were drawn by Mesa's software driver (22.3).
 
 use std::fs;
 use std::path::PathBuf;
@@ -13,11 +12,12 @@ use mouthpiece_tests::picture::{Picture, TILE};
 
 use crate::graphics;
 
-/// Mean over the picture: another driver's rounding is below 0.001, a colour that is off by a tenth
-/// above 0.02.
+/// Mean over the picture. Measured on the first version: OpenGL instead of Vulkan below 0.0001, a
+/// head turned by 0.01 rad 0.02, another tier 0.023.
 const MEAN_MAX: f32 = 0.01;
-/// Mean over any tile: a mouth 1 mm further open is above it.
-const TILE_MAX: f32 = 0.08;
+/// Mean over any tile. Measured: OpenGL 0.0002, a jaw turned by 0.01 rad 0.13, by 0.02 rad 0.20,
+/// another tier 0.2.
+const TILE_MAX: f32 = 0.15;
 
 const SIZE: &str = "240x300";
 

@@ -1,3 +1,5 @@
+//! Conversations, legal and not: what a session makes of lines that come whole, in pieces, or broken.
+
 use super::*;
 use proptest::prelude::*;
 

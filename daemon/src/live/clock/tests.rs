@@ -1,3 +1,5 @@
+//! The clock against a device that stalls, jumps and drifts.
+
 use super::*;
 
 const MS: i64 = 1_000_000;
