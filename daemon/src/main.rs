@@ -5,7 +5,7 @@
 //! | [`cli`] | the words of the command line |
 //! | [`input`] | labels and sound, from files or the demo |
 //! | [`pipeline`] | labels to key frames, offline: what export, curves and still share |
-//! | [`export`], [`curves`], [`labels`], [`still`], [`bench`], [`doctor`] | the commands of these names |
+//! | [`export`], [`curves`], [`labels`], [`still`], [`bench`](mod@bench), [`doctor`] | the commands of these names |
 //! | [`live`] | `run` and `say`: window, sound, sockets and the clock |
 //! | [`media`] | sound and video files |
 //! | [`interrupt`] | Ctrl-C, for work that ends by itself |
