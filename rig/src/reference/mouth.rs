@@ -140,7 +140,7 @@ fn tongue() -> Part {
         let half_width = (9.0 + 9.5 * v.sqrt()) * taper;
         let height = (3.0 + 6.5 * v.powf(0.8)) * taper;
         let top =
-            -38.5 + 7.0 * (v * 1.25).min(1.0).sin() - 9.0 * ((v - 0.55).max(0.0) / 0.45).powi(2);
+            -35.8 + 7.0 * (v * 1.25).min(1.0).sin() - 9.0 * ((v - 0.55).max(0.0) / 0.45).powi(2);
         let across = turn.cos();
         let groove = if turn.sin() > 0.0 {
             -1.3 * (-(across / 0.25).powi(2)).exp() * taper

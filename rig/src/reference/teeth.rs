@@ -112,7 +112,7 @@ fn tooth(crown: &Crown, along: Vec3, up: f32) -> Mesh {
         } else {
             0.0
         };
-        let height = crown.height * rise + 0.9 * (lip - 1.0) * (1.0 - 0.6 * crown.flat) + 0.7;
+        let height = crown.height * rise + 0.28 * (lip - 1.0) + 0.7;
         crown.edge + along * width + out * (depth + bow) + vec3(0.0, up * height, 0.0)
     }));
     for (uv, p) in mesh.uvs.iter_mut().zip(&mesh.positions) {
