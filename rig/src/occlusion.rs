@@ -5,14 +5,14 @@
 
 use glam::{Vec3, Vec3A};
 use obvhs::bvh2::Bvh2;
-use obvhs::ray::{Ray, RayHit};
+use obvhs::ray::Ray;
 use obvhs::triangle::Triangle;
 use obvhs::{BvhBuildParams, bvh2::builder::build_bvh2_from_tris};
 
 use crate::{Head, Material, Mesh, Part};
 
 /// Rays a vertex; directions are a fixed spiral, so that every build gives the same head.
-const RAYS: usize = 40;
+const RAYS: usize = 32;
 /// What lies farther than this does not darken, mm.
 const REACH_MM: f32 = 45.0;
 
@@ -35,7 +35,9 @@ pub(crate) fn bake(head: &mut Head) {
     let mouth = Scene::new(head.parts.iter().filter(blocks).map(|p| &p.mesh));
     let directions = spiral();
     whole.bake(&mut head.skin.mesh, &directions);
-    for part in &mut head.parts {
+    // Hair and cloth keep their full light: their own shading darkens them.
+    let shaded = |part: &&mut Part| !matches!(part.material, Material::Hair | Material::Cloth);
+    for part in head.parts.iter_mut().filter(shaded) {
         let scene = if inside(part) { &mouth } else { &whole };
         scene.bake(&mut part.mesh, &directions);
     }
@@ -68,8 +70,7 @@ impl Scene {
         let free = directions.iter().filter(|d| {
             let direction = Vec3A::from(side * d.x + up * d.y + normal * d.z);
             let ray = Ray::new(start, direction, 0.0, REACH_MM);
-            let mut hit = RayHit::none();
-            !self.bvh.ray_traverse(ray, &mut hit, |ray, id| {
+            self.bvh.ray_traverse_miss(ray, |ray, id| {
                 self.triangles[self.bvh.primitive_indices[id] as usize].intersect(ray)
             })
         });
