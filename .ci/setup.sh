@@ -25,7 +25,8 @@ has() { command -v "$1" >/dev/null 2>&1; }
 has_library() { # has_library SONAME: on the loader's list
     local loader=ldconfig
     has ldconfig || loader=/sbin/ldconfig
-    "$loader" -p 2>/dev/null | grep -qF "$1"
+    # Not grep -q: it would close the pipe early, which pipefail takes for a failure.
+    "$loader" -p 2>/dev/null | grep -F "$1" >/dev/null
 }
 
 has_vulkan_driver() {
@@ -33,6 +34,14 @@ has_vulkan_driver() {
     local folder
     for folder in /usr/share /usr/local/share /etc "${XDG_DATA_HOME:-$HOME/.local/share}"; do
         compgen -G "$folder/vulkan/icd.d/*.json" >/dev/null && return 0
+    done
+    return 1
+}
+
+has_alsa_pulse() {
+    local folder
+    for folder in "/usr/lib/*" /usr/lib /usr/lib64; do
+        compgen -G "$folder/alsa-lib/libasound_module_pcm_pulse.so" >/dev/null && return 0
     done
     return 1
 }
@@ -76,8 +85,7 @@ look_for_test() {
     has Xvfb || missing xvfb "a screen of its own for the live test"
     has pulseaudio || missing pulseaudio "a sound device of its own for the live test"
     has parec || missing pulseaudio-utils "records what the live test hears"
-    compgen -G "/usr/lib/*/alsa-lib/libasound_module_pcm_pulse.so" >/dev/null ||
-        missing libasound2-plugins "leads ALSA's sound to PulseAudio"
+    has_alsa_pulse || missing libasound2-plugins "leads ALSA's sound to PulseAudio"
     has ffmpeg || missing ffmpeg "a second opinion on the videos that are written"
     has python3 || missing python3 "runs the live test"
 }

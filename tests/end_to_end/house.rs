@@ -104,7 +104,7 @@ fn every_dependency_has_a_licence_that_we_may_ship() {
     let host = format!("{}-unknown-linux-gnu", std::env::consts::ARCH);
     let out = Command::new(env!("CARGO"))
         .current_dir(binary::root())
-        .args(["metadata", "--format-version=1", "--locked", "--offline"])
+        .args(["metadata", "--format-version=1", "--locked"])
         .args(["--filter-platform", &host])
         .output()
         .unwrap();

@@ -44,6 +44,11 @@ fn judge(name: &str, args: &[&str]) {
         eprintln!("renewed {}", golden.display());
         return;
     }
+    assert!(
+        golden.is_file(),
+        "{} is not there; draw it with UPDATE_GOLDEN=1",
+        golden.display()
+    );
     let found = drawn.difference(&Picture::read(&golden));
     if found.mean <= MEAN_MAX && found.worst_tile <= TILE_MAX {
         return;
