@@ -5,6 +5,7 @@ use mouthpiece_rig::{Head, Material, Mesh, Part};
 
 use crate::gpu_data::{PartVertex, SkinMoving, SkinStill, unorm};
 use crate::maps;
+use crate::maps::hairline::Hairline;
 
 /// The skin as it is drawn: the head's vertices, then copies of those on the chart's seam, so that
 /// no triangle runs the wrong way round the chart.
@@ -17,6 +18,8 @@ pub(crate) struct SkinGeometry {
     pub(crate) moving: Vec<SkinMoving>,
     pub(crate) still: Vec<SkinStill>,
     pub(crate) indices: Vec<u32>,
+    /// The triangles round the mouth, whose backs show through it.
+    pub(crate) inside: Vec<u32>,
     normals: Vec<Vec3>,
 }
 
@@ -39,7 +42,11 @@ impl SkinGeometry {
         let mut copies = Vec::new();
         let mut copy_of = std::collections::HashMap::new();
         let mut indices = Vec::with_capacity(mesh.triangles.len() * 3);
+        let covered = under_hair(head);
         for t in &mesh.triangles {
+            if t.iter().all(|&i| covered[i as usize]) {
+                continue;
+            }
             let u = t.map(|i| mesh.uvs[i as usize].x);
             let high = u[0].max(u[1]).max(u[2]);
             for (i, u) in t.iter().zip(u) {
@@ -61,6 +68,7 @@ impl SkinGeometry {
             copies,
             still,
             indices,
+            inside: inside_indices(head),
             normals: vec![Vec3::ZERO; mesh.positions.len()],
         };
         geometry.set(&mesh.positions);
@@ -96,6 +104,37 @@ impl SkinGeometry {
     }
 }
 
+/// Millimetres within the hairline at which skin is never seen.
+const COVERED_MM: f32 = 15.0;
+
+/// Millimetres from the middle of the mouth within which the skin's back can show.
+const INSIDE_MM: f32 = 100.0;
+
+fn inside_indices(head: &Head) -> Vec<u32> {
+    let mouth = maps::landmarks::Landmarks::of(head).mouth;
+    let mesh = &head.skin.mesh;
+    let near = |i: &u32| mesh.positions[*i as usize].distance(mouth) < INSIDE_MM;
+    mesh.triangles
+        .iter()
+        .filter(|t| t.iter().all(near))
+        .flatten()
+        .copied()
+        .collect()
+}
+
+/// Which skin vertices lie deep under hair: triangles of them need not be drawn.
+fn under_hair(head: &Head) -> Vec<bool> {
+    let has_hair = head.parts.iter().any(|p| p.material == Material::Hair);
+    let hairline = if has_hair { Hairline::of(head) } else { None };
+    let depth = |uv: &Vec2| hairline.as_ref().map_or(0.0, |h| h.depth_mm(*uv));
+    head.skin
+        .mesh
+        .uvs
+        .iter()
+        .map(|uv| depth(uv) > COVERED_MM)
+        .collect()
+}
+
 /// All parts of one material in one pair of buffers.
 #[derive(Debug, Default)]
 pub(crate) struct PartGeometry {
@@ -115,9 +154,9 @@ impl PartGeometry {
     fn add(&mut self, part: &Part) {
         let mesh = &part.mesh;
         let base = self.vertices.len() as u32;
-        let edge = match part.material {
-            Material::Hair => edge_distance(mesh),
-            _ => vec![1.0; mesh.positions.len()],
+        let (edge, normals) = match part.material {
+            Material::Hair => (edge_distance(mesh), joined_normals(mesh)),
+            _ => (vec![1.0; mesh.positions.len()], mesh.normals.clone()),
         };
         for (i, p) in mesh.positions.iter().enumerate() {
             let uv = match part.material {
@@ -126,7 +165,7 @@ impl PartGeometry {
             };
             self.vertices.push(PartVertex {
                 rest: p.to_array(),
-                normal: mesh.normals[i].to_array(),
+                normal: normals[i].to_array(),
                 uv: uv.to_array(),
                 shares: [
                     unorm(mesh.occlusion[i]),
@@ -142,6 +181,29 @@ impl PartGeometry {
     }
 }
 
+/// For each vertex the first one at its place.
+fn welded(mesh: &Mesh) -> Vec<u32> {
+    let mut first_at = std::collections::HashMap::new();
+    let place = |(i, p): (usize, &Vec3)| {
+        let key = (*p * 64.0).round().as_ivec3();
+        *first_at.entry((key.x, key.y, key.z)).or_insert(i as u32)
+    };
+    mesh.positions.iter().enumerate().map(place).collect()
+}
+
+/// Normals with one at each place, so that layers raised along them do not tear at seams and poles.
+fn joined_normals(mesh: &Mesh) -> Vec<Vec3> {
+    let welded = welded(mesh);
+    let mut sums = vec![Vec3::ZERO; mesh.positions.len()];
+    for (first, normal) in welded.iter().zip(&mesh.normals) {
+        sums[*first as usize] += *normal;
+    }
+    welded
+        .iter()
+        .map(|first| sums[*first as usize].normalize_or(Vec3::Y))
+        .collect()
+}
+
 /// Millimetres from the edge at which hair stands to its full height.
 const EDGE_REACH_MM: f32 = 16.0;
 
@@ -149,16 +211,7 @@ const EDGE_REACH_MM: f32 = 16.0;
 fn edge_distance(mesh: &Mesh) -> Vec<f32> {
     let mut sides: std::collections::HashMap<(u32, u32), u32> = std::collections::HashMap::new();
     // Vertices at one place count as one: a seam is no edge.
-    let mut first_at = std::collections::HashMap::new();
-    let welded: Vec<u32> = mesh
-        .positions
-        .iter()
-        .enumerate()
-        .map(|(i, p)| {
-            let key = (*p * 64.0).round().as_ivec3();
-            *first_at.entry((key.x, key.y, key.z)).or_insert(i as u32)
-        })
-        .collect();
+    let welded = welded(mesh);
     let weld = |i: u32| welded[i as usize];
     for t in &mesh.triangles {
         for (a, b) in [(t[0], t[1]), (t[1], t[2]), (t[2], t[0])] {

@@ -15,6 +15,7 @@ pub(crate) struct Frame {
     pub(crate) key_dir: [f32; 4],
     pub(crate) fill_dir: [f32; 4],
     pub(crate) rim_dir: [f32; 4],
+    pub(crate) half_key: [f32; 4],
     pub(crate) key_colour: [f32; 4],
     pub(crate) fill_colour: [f32; 4],
     pub(crate) rim_colour: [f32; 4],

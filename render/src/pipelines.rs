@@ -94,7 +94,7 @@ struct Recipe {
     /// None: depth only, for the shadow map.
     fragment: Option<&'static str>,
     mesh: Mesh,
-    both_sides: bool,
+    cull: Option<wgpu::Face>,
     /// Alpha says how many samples are covered.
     strands: bool,
     depth: wgpu::CompareFunction,
@@ -106,7 +106,7 @@ const fn solid(file: &'static str) -> Recipe {
         vertex: "mouth_vertex",
         fragment: Some(file),
         mesh: Mesh::Part,
-        both_sides: false,
+        cull: Some(wgpu::Face::Back),
         strands: false,
         depth: wgpu::CompareFunction::Less,
     }
@@ -128,16 +128,16 @@ const EYE: Recipe = Recipe {
 };
 const LASH: Recipe = Recipe {
     vertex: "lash_vertex",
-    both_sides: true,
+    cull: None,
     ..solid("lash")
 };
 const CAVITY: Recipe = Recipe {
-    both_sides: true,
+    cull: None,
     ..solid("cavity")
 };
 const CLOTH: Recipe = Recipe {
     vertex: "cloth_vertex",
-    both_sides: true,
+    cull: None,
     ..solid("cloth")
 };
 const BACKDROP: Recipe = Recipe {
@@ -152,6 +152,12 @@ const FLASH: Recipe = Recipe {
     mesh: Mesh::None,
     depth: wgpu::CompareFunction::Always,
     ..solid("flash")
+};
+const INSIDE: Recipe = Recipe {
+    vertex: "inside_vertex",
+    mesh: Mesh::Skin,
+    cull: Some(wgpu::Face::Front),
+    ..solid("inside")
 };
 const SKIN_SHADOW: Recipe = Recipe {
     vertex: "skin_shadow",
@@ -174,6 +180,7 @@ pub(crate) struct Pipelines {
     pub(crate) cloth: wgpu::RenderPipeline,
     pub(crate) backdrop: wgpu::RenderPipeline,
     pub(crate) flash: wgpu::RenderPipeline,
+    pub(crate) inside: wgpu::RenderPipeline,
     pub(crate) skin_shadow: wgpu::RenderPipeline,
 }
 
@@ -216,6 +223,7 @@ impl Pipelines {
             cloth: make(&CLOTH, &lit)?,
             backdrop: make(&BACKDROP, &bare)?,
             flash: make(&FLASH, &bare)?,
+            inside: make(&INSIDE, &bare)?,
             skin_shadow: make(&SKIN_SHADOW, &bare)?,
         })
     }
@@ -277,8 +285,11 @@ fn pipeline(
                 },
             },
             primitive: wgpu::PrimitiveState {
-                cull_mode: (!recipe.both_sides && recipe.mesh != Mesh::None)
-                    .then_some(wgpu::Face::Back),
+                cull_mode: if recipe.mesh == Mesh::None {
+                    None
+                } else {
+                    recipe.cull
+                },
                 ..Default::default()
             },
             depth_stencil: Some(wgpu::DepthStencilState {

@@ -1,6 +1,6 @@
 //! Draws a head: owns its buffers, maps and pipelines, and writes one picture's commands.
 
-use glam::{Mat4, Vec3};
+use glam::{Mat4, Vec3, Vec4};
 use mouthpiece_rig::{Body, Head, KeyFrame, Material, Skin};
 use thiserror::Error;
 
@@ -73,7 +73,7 @@ struct PartBuffers {
 const FLASH_SHARE: f32 = 0.25;
 
 /// Two triangles a cell. Keep in step with shaders/background.wgsl.
-const BACKDROP_VERTICES: u32 = 16 * 12 * 6;
+const BACKDROP_VERTICES: u32 = 8 * 6 * 6;
 
 /// The head on the card, ready to be drawn in one target format.
 #[derive(Debug)]
@@ -89,6 +89,7 @@ pub struct Renderer {
     skin_moving: wgpu::Buffer,
     skin_still: wgpu::Buffer,
     skin_indices: wgpu::Buffer,
+    inside_indices: wgpu::Buffer,
     parts: Vec<(Material, PartBuffers)>,
     pipelines: Pipelines,
     frame: wgpu::Buffer,
@@ -128,6 +129,7 @@ impl Renderer {
         );
         let skin_still = upload::buffer(gpu, "skin, still", &skin.still, vertex);
         let skin_indices = upload::buffer(gpu, "skin", &skin.indices, wgpu::BufferUsages::INDEX);
+        let inside_indices = upload::buffer(gpu, "inside", &skin.inside, wgpu::BufferUsages::INDEX);
         let parts = DRAW_ORDER
             .into_iter()
             .filter_map(|material| {
@@ -181,11 +183,11 @@ impl Renderer {
             ],
         );
 
-        let skin_maps = maps::skin::paint(head, detail.map_width as usize);
-        let eye_map = upload::image(gpu, "eye", maps::eye::paint(detail.eye_map as usize));
-        let hair_map = upload::image(gpu, "hair", maps::hair::paint(detail.hair_map as usize));
-        let colour_map = upload::image(gpu, "skin colour", skin_maps.colour);
-        let detail_map = upload::image(gpu, "skin detail", skin_maps.detail);
+        let painted = maps::Maps::paint(head, &detail);
+        let eye_map = upload::image(gpu, "eye", painted.eye);
+        let hair_map = upload::image(gpu, "hair", painted.hair);
+        let colour_map = upload::image(gpu, "skin colour", painted.skin.colour);
+        let detail_map = upload::image(gpu, "skin detail", painted.skin.detail);
         let sampler = device.create_sampler(&wgpu::SamplerDescriptor {
             label: Some("maps"),
             mag_filter: wgpu::FilterMode::Linear,
@@ -234,6 +236,7 @@ impl Renderer {
             skin_moving,
             skin_still,
             skin_indices,
+            inside_indices,
             parts,
             pipelines,
             frame,
@@ -354,6 +357,7 @@ impl Renderer {
             key_dir: direction(&studio.key),
             fill_dir: direction(&studio.fill),
             rim_dir: direction(&studio.rim),
+            half_key: half_key(studio.key.direction, framing.eye - self.extent.centre()).to_array(),
             key_colour: colour(&studio.key),
             fill_colour: colour(&studio.fill),
             rim_colour: colour(&studio.rim),
@@ -378,7 +382,7 @@ impl Renderer {
             ..Default::default()
         });
         pass.set_bind_group(0, &self.frame_group, &[]);
-        self.draw_skin(&mut pass, &self.pipelines.skin_shadow);
+        self.draw_skin(&mut pass, &self.pipelines.skin_shadow, &self.skin_indices);
     }
 
     fn picture_pass(
@@ -413,10 +417,13 @@ impl Renderer {
             self.draw_material(&mut pass, *material, buffers);
         }
         pass.set_bind_group(2, &self.skin_maps, &[]);
-        self.draw_skin(&mut pass, &self.pipelines.skin);
+        self.draw_skin(&mut pass, &self.pipelines.skin, &self.skin_indices);
         let drawn = |m: Material| m != Material::Hair && (mouth_open || !in_mouth(m));
         for (material, buffers) in self.parts.iter().filter(|(m, _)| drawn(*m)) {
             self.draw_material(&mut pass, *material, buffers);
+        }
+        if mouth_open && !self.skin.inside.is_empty() {
+            self.draw_skin(&mut pass, &self.pipelines.inside, &self.inside_indices);
         }
         pass.set_pipeline(&self.pipelines.backdrop);
         pass.draw(0..BACKDROP_VERTICES, 0..1);
@@ -426,12 +433,17 @@ impl Renderer {
         }
     }
 
-    fn draw_skin(&self, pass: &mut wgpu::RenderPass<'_>, pipeline: &wgpu::RenderPipeline) {
+    fn draw_skin(
+        &self,
+        pass: &mut wgpu::RenderPass<'_>,
+        pipeline: &wgpu::RenderPipeline,
+        indices: &wgpu::Buffer,
+    ) {
         pass.set_pipeline(pipeline);
         pass.set_vertex_buffer(0, self.skin_moving.slice(..));
         pass.set_vertex_buffer(1, self.skin_still.slice(..));
-        pass.set_index_buffer(self.skin_indices.slice(..), wgpu::IndexFormat::Uint32);
-        pass.draw_indexed(0..self.skin.indices.len() as u32, 0, 0..1);
+        pass.set_index_buffer(indices.slice(..), wgpu::IndexFormat::Uint32);
+        pass.draw_indexed(0..(indices.size() / 4) as u32, 0, 0..1);
     }
 
     fn draw_material(
@@ -474,6 +486,14 @@ const DRAW_ORDER: [Material; 8] = [
 
 /// Half a gap between the lips that is no gap, mm: nothing of the mouth's inside is drawn then.
 const SHUT_MM: f32 = 0.02;
+
+/// The direction half-way between lamp and camera, and the visibility and Fresnel part of the glossy lobe there
+/// (see `gloss_lobe` in shaders/light.wgsl) for skin's roughness.
+fn half_key(lamp: Vec3, to_camera: Vec3) -> Vec4 {
+    let half = (lamp + to_camera.normalize_or(Vec3::Z)).normalize_or(Vec3::Z);
+    let cosine = lamp.dot(half);
+    half.extend(1.0 / ((cosine * cosine).max(0.1) * 3.2))
+}
 
 fn in_mouth(material: Material) -> bool {
     matches!(

@@ -85,7 +85,7 @@ impl Tier {
                 samples: 4,
                 map_width: 2048,
                 eye_map: 512,
-                hair_map: 1024,
+                hair_map: 768,
                 shadow_map: 384,
                 shadow_taps: 4,
                 anisotropy: 1,

@@ -157,6 +157,12 @@ impl Extent {
         }
     }
 
+    /// The middle.
+    #[must_use]
+    pub fn centre(&self) -> Vec3 {
+        (self.min + self.max) * 0.5
+    }
+
     /// The eight corners.
     #[must_use]
     pub fn corners(&self) -> [Vec3; 8] {

@@ -14,8 +14,8 @@ use super::{CHART_HEIGHT, WINDOW_MAX, WINDOW_MIN, ramp};
 const HAIRS: usize = 760;
 
 /// How much hair covers each texel, 0..1.
-pub(crate) fn paint(head: &Head, ground: &Ground, width: usize, height: usize) -> Field {
-    let mut field = Field::new(width, height, 0.0);
+pub(crate) fn paint(head: &Head, ground: &Ground, width: usize, height: usize) -> Field<1> {
+    let mut field = Field::new(width, height, [0.0]);
     for (lower, upper, seed) in [
         ("brow_lower_l", "brow_upper_l", 1),
         ("brow_lower_r", "brow_upper_r", 2),
@@ -78,7 +78,7 @@ impl Arch {
     }
 }
 
-fn brow(field: &mut Field, arch: &Arch, seed: u64) {
+fn brow(field: &mut Field<1>, arch: &Arch, seed: u64) {
     let size = vec2(field.width as f32, field.height as f32);
     let arch = Arch {
         lower: arch.lower.clone(),
@@ -113,7 +113,7 @@ fn brow(field: &mut Field, arch: &Arch, seed: u64) {
             &Stroke {
                 points: [root, middle, tip],
                 half_width: (0.13 + 0.05 * dice.roll()) * arch.per_mm.x,
-                strength: (0.58 + 0.40 * dice.roll()) * (0.55 + 0.45 * end),
+                strength: [(0.58 + 0.40 * dice.roll()) * (0.55 + 0.45 * end)],
             },
             Blend::Cover,
         );
@@ -122,7 +122,7 @@ fn brow(field: &mut Field, arch: &Arch, seed: u64) {
 }
 
 /// The shade of skin under dense hair: without it single strokes look drawn on.
-fn under_shade(field: &mut Field, arch: &Arch) {
+fn under_shade(field: &mut Field<1>, arch: &Arch) {
     let mut dice = Dice::new(7);
     for _ in 0..260 {
         let along = 0.03 + 0.85 * dice.roll();
@@ -134,7 +134,7 @@ fn under_shade(field: &mut Field, arch: &Arch) {
             &Stroke {
                 points: [middle - ahead * 2.0, middle, middle + ahead * 3.0],
                 half_width: 0.75 * arch.per_mm.x,
-                strength: 0.36 * end,
+                strength: [0.36 * end],
             },
             Blend::Cover,
         );

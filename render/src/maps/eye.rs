@@ -22,7 +22,7 @@ pub(crate) fn paint(side: usize) -> Image {
             // Rows run down; the eye's uv grows upwards as v does in the shader's map lookup.
             let at = (vec2(x as f32, y as f32) + 0.5) / side as f32 * (2.0 * REACH) - REACH;
             let r = at.length();
-            let white = sclera(at, veins.values[y * side + x]);
+            let white = sclera(at, veins.values[y * side + x][0]);
             let share = ramp(1.07, 0.94, r);
             let colour = if share > 0.0 {
                 white.lerp(iris(at, r), share)
@@ -74,8 +74,8 @@ fn iris(at: Vec2, r: f32) -> Vec3 {
 }
 
 /// Veins that wander from the corners towards the iris and thin out.
-fn veins(side: usize) -> Field {
-    let mut field = Field::new(side, side, 0.0);
+fn veins(side: usize) -> Field<1> {
+    let mut field = Field::new(side, side, [0.0]);
     let scale = side as f32 / (2.0 * REACH);
     let mut dice = Dice::new(404);
     for i in 0..34 {
@@ -95,7 +95,7 @@ fn veins(side: usize) -> Field {
                 &Stroke {
                     points: [texel(p), texel(next), texel(far)],
                     half_width: 0.016 * scale,
-                    strength,
+                    strength: [strength],
                 },
                 Blend::Cover,
             );

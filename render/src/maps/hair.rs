@@ -29,9 +29,8 @@ pub(crate) fn uv(place: Vec3) -> Vec2 {
 /// The map, `side` texels square.
 pub(crate) fn paint(side: usize) -> Image {
     let s = side as f32;
-    let mut tone = Field::new(side, side, 0.35);
-    let mut height = Field::new(side, side, 0.05);
-    let mut shift = Field::new(side, side, 0.5);
+    // Tone, height, shift.
+    let mut field = Field::new(side, side, [0.35, 0.05, 0.5]);
     let mut dice = Dice::new(1201);
     // About one strand every 0.6 mm; texels of 0.4 mm at a side of 1024.
     let strands = side * side / 14;
@@ -49,30 +48,24 @@ pub(crate) fn paint(side: usize) -> Image {
         let points = [root * s, middle * s, (middle + bent * (length * 0.5)) * s];
         let half_width = (0.00055 + 0.0003 * dice.roll()) * s;
         let clump = value(root.x * 70.0, root.y * 70.0, 8);
-        for (field, strength) in [
-            (&mut tone, 0.25 + 0.30 * dice.roll() + 0.40 * clump),
-            (&mut height, 0.30 + 0.70 * dice.roll()),
-            (&mut shift, dice.roll()),
-        ] {
-            let stroke = Stroke {
-                points,
-                half_width: half_width.max(0.45),
-                strength,
-            };
-            field.draw(&stroke, Blend::Over);
-        }
+        let strength = [
+            0.25 + 0.30 * dice.roll() + 0.40 * clump,
+            0.30 + 0.70 * dice.roll(),
+            dice.roll(),
+        ];
+        let stroke = Stroke {
+            points,
+            half_width: half_width.max(0.45),
+            strength,
+        };
+        field.draw(&stroke, Blend::Over);
     }
     let mut image = Image::new(side, side);
     parallel_rows(&mut image.texels, side, |y, row| {
         for (x, texel) in row.iter_mut().enumerate() {
-            let at = y * side + x;
-            let byte = |v: f32| (v.clamp(0.0, 1.0) * 255.0) as u8;
-            *texel = [
-                byte(tone.values[at]),
-                byte(height.values[at]),
-                byte(shift.values[at]),
-                255,
-            ];
+            let [tone, height, shift] =
+                field.values[y * side + x].map(|v| (v.clamp(0.0, 1.0) * 255.0) as u8);
+            *texel = [tone, height, shift, 255];
         }
     });
     image

@@ -14,11 +14,16 @@ pub(crate) mod hair;
 pub(crate) mod hairline;
 pub(crate) mod image;
 pub(crate) mod landmarks;
+pub(crate) mod lines;
 pub(crate) mod noise;
 pub(crate) mod skin;
 pub(crate) mod strokes;
+pub(crate) mod tone;
 
 use glam::{Vec2, vec2};
+use mouthpiece_rig::Head;
+
+use crate::tier::Detail;
 
 /// Part of the chart that the skin's maps cover. Keep in step with shaders/skin.wgsl.
 pub(crate) const WINDOW_MIN: Vec2 = vec2(0.19, 0.0);
@@ -28,6 +33,34 @@ pub(crate) const WINDOW_MAX: Vec2 = vec2(0.81, 1.0);
 pub(crate) const RADIUS: f32 = 92.0;
 /// Height of the whole chart, mm.
 pub(crate) const CHART_HEIGHT: f32 = 256.0;
+
+/// Every map of a head.
+#[derive(Clone, Debug)]
+pub(crate) struct Maps {
+    pub(crate) skin: skin::SkinMaps,
+    pub(crate) eye: image::Image,
+    pub(crate) hair: image::Image,
+}
+
+impl Maps {
+    /// Paints them: the hair's, which is laid strand by strand, beside the others.
+    pub(crate) fn paint(head: &Head, detail: &Detail) -> Self {
+        let hair = || hair::paint(detail.hair_map as usize);
+        std::thread::scope(|scope| {
+            let beside = std::thread::Builder::new()
+                .name("paint hair".into())
+                .spawn_scoped(scope, hair);
+            let skin = skin::paint(head, detail.map_width as usize);
+            let eye = eye::paint(detail.eye_map as usize);
+            // Where no thread is to be had, or it failed, the work is done here.
+            let hair = beside
+                .ok()
+                .and_then(|thread| thread.join().ok())
+                .unwrap_or_else(hair);
+            Self { skin, eye, hair }
+        })
+    }
+}
 
 /// Runs `paint(row number, row)` over all rows, on as many threads as there are cores, up to 4.
 pub(crate) fn parallel_rows<T: Send>(

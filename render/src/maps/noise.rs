@@ -15,12 +15,19 @@ pub(crate) fn unit(hash: u32) -> f32 {
     (hash >> 8) as f32 / 16_777_216.0
 }
 
+/// The whole number below. `f32::floor` is a call into the C library on plain x86-64, and this is
+/// asked for millions of times.
+fn below(x: f32) -> i32 {
+    let cut = x as i32;
+    cut - i32::from(x < cut as f32)
+}
+
 /// Smooth noise over a lattice of side 1, 0..1.
 pub(crate) fn value(x: f32, y: f32, seed: u32) -> f32 {
-    let (xi, yi) = (x.floor(), y.floor());
+    let (xi, yi) = (below(x), below(y));
     let smooth = |t: f32| t * t * (3.0 - 2.0 * t);
-    let (u, v) = (smooth(x - xi), smooth(y - yi));
-    let at = |dx: i32, dy: i32| unit(hash(xi as i32 + dx, yi as i32 + dy, seed));
+    let (u, v) = (smooth(x - xi as f32), smooth(y - yi as f32));
+    let at = |dx: i32, dy: i32| unit(hash(xi + dx, yi + dy, seed));
     let low = at(0, 0) + (at(1, 0) - at(0, 0)) * u;
     let high = at(0, 1) + (at(1, 1) - at(0, 1)) * u;
     low + (high - low) * v
@@ -36,12 +43,12 @@ pub(crate) fn fractal(x: f32, y: f32, seed: u32) -> f32 {
 
 /// Distances to the nearest and second nearest of points scattered one a cell of side 1.
 pub(crate) fn cells(x: f32, y: f32, seed: u32) -> (f32, f32) {
-    let (xi, yi) = (x.floor(), y.floor());
-    let (fx, fy) = (x - xi, y - yi);
+    let (xi, yi) = (below(x), below(y));
+    let (fx, fy) = (x - xi as f32, y - yi as f32);
     let (mut first, mut second) = (9.0_f32, 9.0_f32);
     for dy in -1..=1 {
         for dx in -1..=1 {
-            let h = hash(xi as i32 + dx, yi as i32 + dy, seed);
+            let h = hash(xi + dx, yi + dy, seed);
             let px = dx as f32 + (h & 0xFFFF) as f32 / 65536.0 - fx;
             let py = dy as f32 + (h >> 16) as f32 / 65536.0 - fy;
             let d = px * px + py * py;

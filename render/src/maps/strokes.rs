@@ -2,22 +2,22 @@
 
 use glam::Vec2;
 
-/// A field of single values that strokes are laid into, 0..1.
+/// A field of N values a texel, 0..1, that strokes are laid into.
 #[derive(Clone, Debug)]
-pub(crate) struct Field {
+pub(crate) struct Field<const N: usize> {
     pub(crate) width: usize,
     pub(crate) height: usize,
-    pub(crate) values: Vec<f32>,
+    pub(crate) values: Vec<[f32; N]>,
 }
 
 /// A bent hair: quadratic curve, in texels.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Stroke {
+pub(crate) struct Stroke<const N: usize> {
     pub(crate) points: [Vec2; 3],
     /// Half the width at the root, texels; the tip is thin.
     pub(crate) half_width: f32,
     /// What it covers with, 0..1.
-    pub(crate) strength: f32,
+    pub(crate) strength: [f32; N],
 }
 
 /// How strokes meet.
@@ -29,8 +29,8 @@ pub(crate) enum Blend {
     Over,
 }
 
-impl Field {
-    pub(crate) fn new(width: usize, height: usize, value: f32) -> Self {
+impl<const N: usize> Field<N> {
+    pub(crate) fn new(width: usize, height: usize, value: [f32; N]) -> Self {
         Self {
             width,
             height,
@@ -39,7 +39,7 @@ impl Field {
     }
 
     /// Lays a stroke; what falls outside is cut off.
-    pub(crate) fn draw(&mut self, stroke: &Stroke, blend: Blend) {
+    pub(crate) fn draw(&mut self, stroke: &Stroke<N>, blend: Blend) {
         let [a, b, c] = stroke.points;
         let length = a.distance(b) + b.distance(c);
         let steps = (length / (stroke.half_width * 1.2).clamp(0.5, 2.0))
@@ -51,16 +51,17 @@ impl Field {
             // Full at the root, thin at the tip.
             let taper = 1.0 - t * t * 0.85;
             let root = (t * 8.0).min(1.0);
+            let fade = taper * (0.4 + 0.6 * root);
             self.dab(
                 p,
                 stroke.half_width * taper,
-                stroke.strength * taper * (0.4 + 0.6 * root),
+                stroke.strength.map(|s| s * fade),
                 blend,
             );
         }
     }
 
-    fn dab(&mut self, p: Vec2, half_width: f32, strength: f32, blend: Blend) {
+    fn dab(&mut self, p: Vec2, half_width: f32, strength: [f32; N], blend: Blend) {
         let reach = half_width + 0.7;
         let x0 = (p.x - reach).floor().max(0.0) as usize;
         let y0 = (p.y - reach).floor().max(0.0) as usize;
@@ -77,9 +78,11 @@ impl Field {
                     continue;
                 }
                 let value = &mut self.values[y * self.width + x];
-                match blend {
-                    Blend::Cover => *value = value.max(cover * strength),
-                    Blend::Over => *value += (strength - *value) * cover,
+                for (value, strength) in value.iter_mut().zip(strength) {
+                    match blend {
+                        Blend::Cover => *value = value.max(cover * strength),
+                        Blend::Over => *value += (strength - *value) * cover,
+                    }
                 }
             }
         }

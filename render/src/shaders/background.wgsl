@@ -9,7 +9,7 @@ struct WallFragment {
 }
 
 // Cells across and down. Keep in step with renderer.rs.
-const CELLS: vec2<u32> = vec2(16u, 12u);
+const CELLS: vec2<u32> = vec2(8u, 6u);
 
 @vertex
 fn backdrop_vertex(@builtin(vertex_index) index: u32) -> WallFragment {

@@ -13,6 +13,9 @@ struct Frame {
     key_dir: vec4<f32>,
     fill_dir: vec4<f32>,
     rim_dir: vec4<f32>,
+    // Half-way between the key light and the camera as seen from the head; w: what the glossy lobe is
+    // divided by beyond its shape, at the angle between the two.
+    half_key: vec4<f32>,
     // Light that a white matte surface facing the lamp returns, linear.
     key_colour: vec4<f32>,
     fill_colour: vec4<f32>,

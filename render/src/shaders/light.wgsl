@@ -22,7 +22,7 @@ fn shadow_read(at: vec2<f32>, depth: f32) -> f32 {
 }
 
 // Step of the widest reads as a share of the map.
-const SOFT_STEP: f32 = 0.0042;
+const WIDE_STEP: f32 = 0.012;
 
 // Each read is itself a smooth mean of four texels: at a texel's distance they join without steps. The
 // map is coarse on purpose: its texel is the softness of the lamp.
@@ -58,12 +58,12 @@ fn key_visible(place: vec3<f32>) -> f32 {
 // The same, softer than the lamp is: for vertices too far apart to show its edge.
 fn key_visible_around(place: vec3<f32>) -> f32 {
     var sum = 0.0;
-    for (var i = -2; i <= 2; i++) {
-        for (var j = -2; j <= 2; j++) {
-            sum += shadow_read(place.xy + vec2(f32(i), f32(j)) * (2.0 * SOFT_STEP), place.z);
+    for (var i = -1; i <= 1; i++) {
+        for (var j = -1; j <= 1; j++) {
+            sum += shadow_read(place.xy + vec2(f32(i), f32(j)) * WIDE_STEP, place.z);
         }
     }
-    return sum / 25.0;
+    return sum / 9.0;
 }
 
 // Ambient light from around a direction.
