@@ -9,7 +9,7 @@ use super::{crown, polyline};
 use crate::{Body, Material, Part};
 
 const COLUMNS: usize = 128;
-const ROWS: usize = 15;
+const ROWS: usize = 20;
 /// Thickness over the ears and over the crown, mm, and the way from the hairline in which it grows.
 const SIDE_MM: f32 = 6.0;
 const TOP_MM: f32 = 14.0;
