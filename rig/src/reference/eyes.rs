@@ -121,7 +121,7 @@ impl Eyes {
     /// Lowers the upper lids to where they rest in life, on the upper rim of the iris: the surface
     /// data has them wide open.
     pub(super) fn relax(&self, positions: &mut [Vec3], lids: &mut [Lid]) {
-        const SHARE: f32 = 0.13;
+        const SHARE: f32 = 0.08;
         for lid in lids.iter_mut().filter(|lid| lid.turn < 0.0) {
             let centre = self.centre * vec3(if lid.left { 1.0 } else { -1.0 }, 1.0, 1.0);
             let place = &mut positions[lid.vertex as usize];

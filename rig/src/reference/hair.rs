@@ -14,6 +14,8 @@ const ROWS: usize = 20;
 const SIDE_MM: f32 = 6.0;
 const TOP_MM: f32 = 14.0;
 const GROWTH_MM: f32 = 20.0;
+/// How much higher it stands over the forehead, mm.
+const QUIFF_MM: f32 = 7.0;
 
 /// The cap. `uv`: u round the head, v from the hairline (0) to the crown (1).
 pub(super) fn cap(surface: &Surface) -> Part {
@@ -39,10 +41,15 @@ pub(super) fn cap(surface: &Surface) -> Part {
             polyline::at_share(line, share) * vec3(if column < 0.0 { -1.0 } else { 1.0 }, 1.0, 1.0);
         let out = vec3(skin.x, (skin.y - 50.0).max(0.0), skin.z - 5.0).normalize_or(Vec3::Y);
         let full = SIDE_MM + (TOP_MM - SIDE_MM) * ramp(50.0, 125.0, skin.y);
-        let tuft =
-            (1.0 - v * v) * 0.5 * ((u * 151.0 + 5.0 * v).sin() + (u * 67.0 - 11.0 * v).sin());
+        // Locks: uneven in two sizes, gone at the crown, where all columns meet.
+        let fine = (u * 151.0 + 5.0 * v).sin() + (u * 67.0 - 11.0 * v).sin();
+        let broad = (u * 39.0 + 2.5 * (v * 7.0).sin()).sin() * (v * 12.0 + u * 9.0).sin();
+        let locks = (1.0 - v * v) * (0.4 * fine + 1.5 * broad * ramp(80.0, 115.0, skin.y));
+        // Brushed up and to the subject's left at the front: no head of hair is a dome.
+        let front = (-((u - 0.47) / 0.10).powi(2)).exp() * ramp(0.03, 0.22, v) * ramp(0.85, 0.3, v);
         let grown = 1.0 - (-share * length / GROWTH_MM).exp();
-        skin + out * (0.25 + grown * (full + 0.8 * tuft))
+        skin + out * (0.25 + grown * (full + locks))
+            + vec3(1.5, QUIFF_MM, 0.35 * QUIFF_MM) * (front * grown)
     }));
     let weight = vec![0.0; mesh.positions.len()];
     Part {

@@ -261,7 +261,7 @@ fn line_nostril(half: &mut Half, rim: &[usize], surface: &Surface) {
         1.6,
         rim.len(),
     );
-    let up = vec3(0.6, 5.0, -1.5);
+    let up = vec3(0.8, 7.5, -2.5);
     let mut outer = rim.to_vec();
     for (rise, shrink) in [(0.0, 1.0), (0.8, 0.75), (1.6, 0.35)] {
         let centre = middle(&inner);
@@ -270,14 +270,14 @@ fn line_nostril(half: &mut Half, rim: &[usize], surface: &Surface) {
             .zip(rim)
             .map(|(p, &i)| {
                 let chart = half.vertices[i].chart;
-                half.push(centre + (*p - centre) * shrink + up * rise, chart, 0.0, 0.6)
+                half.push(centre + (*p - centre) * shrink + up * rise, chart, 0.0, 0.0)
             })
             .collect();
         half.strip(&closed(&outer), &closed(&ring));
         outer = ring;
     }
     let chart = half.vertices[rim[0]].chart;
-    let apex = half.push(middle(&inner) + up * 1.9, chart, 0.0, 0.6);
+    let apex = half.push(middle(&inner) + up * 1.9, chart, 0.0, 0.0);
     half.strip(&closed(&outer), &vec![apex; outer.len() + 1]);
 }
 
