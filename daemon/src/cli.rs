@@ -1,4 +1,4 @@
-//! The command line: what users script against (DESIGN.md's table, as far as this version goes).
+//! The command line: what users script against.
 //!
 //! Only words and their meaning; the work is in the module of each command's name. Values that
 //! need reading (sizes, rates, colours) are in [`values`].

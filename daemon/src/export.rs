@@ -2,7 +2,7 @@
 //!
 //! Three threads with bounded queues between them: the simulation makes key frames, this one draws
 //! them, the encoder takes the pictures. Frame `k` shows tick `k * 48000 * den / num` to the tick,
-//! whatever any thread is doing (DESIGN.md, Clocks). Nothing appears under the final name before
+//! whatever any thread is doing. Nothing appears under the final name before
 //! all of it is there.
 
 mod encoder;

@@ -2,7 +2,7 @@
 //!
 //! Export, curves and still all draw from here, so that what curves measure is what export shows.
 //! The simulation runs on its own thread into a bounded queue, so that it overlaps with drawing
-//! and encoding. The counter of instants is the only clock (DESIGN.md, Clocks): the same utterance,
+//! and encoding. The counter of instants is the only clock: the same utterance,
 //! instants and seed give the same key frames, whatever the machine is doing meanwhile.
 
 use std::sync::Arc;

@@ -85,7 +85,7 @@ fn doctor_tells_of_graphics_sound_display_and_video() {
     }
 }
 
-/// Guards the names of bench's figures, which DESIGN.md promises to scripts; not the figures.
+/// Guards the names of bench's figures, which scripts rely on; not the figures.
 #[test]
 fn bench_json_has_every_figure() {
     if !graphics::are_there_for("bench") {

@@ -1,4 +1,4 @@
-//! The one clock: which tick the listener hears now (DESIGN.md, Clocks).
+//! The one clock: which tick the listener hears now.
 //!
 //! Wanted: what is read never goes back, never runs ahead of what the device was given, is right
 //! within a millisecond or two when the device's stamps jitter, recovers by itself when stamps are
