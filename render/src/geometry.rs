@@ -107,13 +107,19 @@ impl SkinGeometry {
 /// Millimetres within the hairline at which skin is never seen.
 const COVERED_MM: f32 = 15.0;
 
-/// Millimetres from the middle of the mouth within which the skin's back can show.
-const INSIDE_MM: f32 = 100.0;
+/// Where the skin's back can show through the mouth: the cheeks on both sides of it. Distance from the
+/// middle of the mouth, mm: least across, most up and down, most behind.
+const CHEEK_ACROSS_MM: f32 = 24.0;
+const CHEEK_HEIGHT_MM: f32 = 34.0;
+const CHEEK_DEPTH_MM: f32 = 75.0;
 
 fn inside_indices(head: &Head) -> Vec<u32> {
     let mouth = maps::landmarks::Landmarks::of(head).mouth;
     let mesh = &head.skin.mesh;
-    let near = |i: &u32| mesh.positions[*i as usize].distance(mouth) < INSIDE_MM;
+    let near = |i: &u32| {
+        let to = mesh.positions[*i as usize] - mouth;
+        to.x.abs() > CHEEK_ACROSS_MM && to.y.abs() < CHEEK_HEIGHT_MM && -to.z < CHEEK_DEPTH_MM
+    };
     mesh.triangles
         .iter()
         .filter(|t| t.iter().all(near))
@@ -176,10 +182,24 @@ impl PartGeometry {
                 bodies: [part.bodies[0] as u8, part.bodies[1] as u8, 0, 0],
             });
         }
-        self.indices
-            .extend(mesh.triangles.iter().flatten().map(|i| base + i));
+        // Of an eyeball only the front is ever seen.
+        let seen = |t: &&[u32; 3]| {
+            part.material != Material::Eye
+                || t.iter()
+                    .any(|i| mesh.uvs[*i as usize].length() < EYE_SEEN_RADII)
+        };
+        self.indices.extend(
+            mesh.triangles
+                .iter()
+                .filter(seen)
+                .flatten()
+                .map(|i| base + i),
+        );
     }
 }
+
+/// Iris radii from the pupil at which the ball is behind the lids whatever the gaze.
+const EYE_SEEN_RADII: f32 = 3.4;
 
 /// For each vertex the first one at its place.
 fn welded(mesh: &Mesh) -> Vec<u32> {
@@ -264,9 +284,10 @@ mod tests {
     use super::*;
     use glam::{vec2, vec3};
 
-    /// A strip round the back of the head, from u 0.9 over the seam to 0.1.
+    /// A strip round the bald back of the head, from u 0.9 over the seam to 0.1.
     fn strip() -> Head {
         let mut head = Head::reference().unwrap();
+        head.parts.clear();
         let us = [0.9_f32, 0.97, 0.04, 0.1];
         let place = |u: f32, y: f32| {
             let turn = (u - 0.5) * std::f32::consts::TAU;

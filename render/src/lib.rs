@@ -16,6 +16,9 @@
 
 #![forbid(unsafe_code)]
 
+mod bindings;
+mod error;
+mod frame;
 mod geometry;
 mod gpu;
 mod gpu_data;
@@ -32,9 +35,10 @@ mod upload;
 mod view;
 mod window;
 
+pub use error::RenderError;
 pub use gpu::{Gpu, GpuError};
 pub use offscreen::{FRAMES_IN_FLIGHT, Offscreen};
-pub use renderer::{RenderError, Renderer};
+pub use renderer::Renderer;
 pub use shader::ShaderError;
 pub use tier::{Tier, UnknownTier};
 pub use view::{Background, Camera, Extent, Framing, UnknownCamera, View};

@@ -8,8 +8,9 @@ use std::time::Duration;
 
 use mouthpiece_rig::{Head, KeyFrame};
 
+use crate::error::RenderError;
 use crate::gpu::Gpu;
-use crate::renderer::{RenderError, Renderer, check_size};
+use crate::renderer::{Renderer, check_size};
 use crate::targets::texture;
 use crate::tier::Tier;
 use crate::view::{Extent, View};

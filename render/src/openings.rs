@@ -168,14 +168,14 @@ mod tests {
     #[test]
     fn a_parabola_through_its_own_points_is_found() {
         let f = |x: f64| 0.4 + 0.1 * x - 0.6 * x * x;
-        let (mut s, mut t) = ([0.0; 5], [0.0; 3]);
+        let (mut s, mut t) = ([0.0_f64; 5], [0.0_f64; 3]);
         for i in -5..=5 {
             let x = f64::from(i) * 0.15;
-            for k in 0..5 {
-                s[k] += x.powi(k as i32);
+            for (k, sum) in (0..).zip(&mut s) {
+                *sum += x.powi(k);
             }
-            for k in 0..3 {
-                t[k] += x.powi(k as i32) * f(x);
+            for (k, sum) in (0..).zip(&mut t) {
+                *sum += x.powi(k) * f(x);
             }
         }
         let found = parabola(&s, &t).unwrap();

@@ -1,65 +1,19 @@
 //! Draws a head: owns its buffers, maps and pipelines, and writes one picture's commands.
 
-use glam::{Mat4, Vec3, Vec4};
-use mouthpiece_rig::{Body, Head, KeyFrame, Material, Skin};
-use thiserror::Error;
+use mouthpiece_rig::{Head, KeyFrame, Material, Skin};
 
+use crate::bindings::{self, MapGroups};
+use crate::error::RenderError;
+use crate::frame;
 use crate::geometry::{PartGeometry, SkinGeometry};
 use crate::gpu::Gpu;
 use crate::gpu_data::{Frame, SkinMoving};
-use crate::maps;
-use crate::openings::{Open, Openings};
+use crate::openings::Openings;
 use crate::pipelines::{Layouts, Pipelines};
-use crate::shader::ShaderError;
-use crate::studio::{Lamp, Studio};
-use crate::targets::{DEPTH, Targets, texture};
+use crate::targets::Targets;
 use crate::tier::{Detail, Tier};
 use crate::upload;
-use crate::view::{Background, Extent, View, srgb};
-
-/// Why a picture could not be drawn.
-#[derive(Debug, Error)]
-pub enum RenderError {
-    /// The key frame is of another head.
-    #[error(
-        "the key frame has {got} skin vertices but the head has {wanted}: draw frames of the head that was loaded"
-    )]
-    WrongHead {
-        /// Vertices of the head.
-        wanted: usize,
-        /// Vertices of the frame.
-        got: usize,
-    },
-    /// The picture is larger than the adapter can draw, or empty.
-    #[error(
-        "a picture of {width} x {height} pixels cannot be drawn: this graphics adapter does 1 to {max} a side"
-    )]
-    Size {
-        /// Wanted width.
-        width: u32,
-        /// Wanted height.
-        height: u32,
-        /// Longest side that can be had.
-        max: u32,
-    },
-    /// A shader file is broken.
-    #[error(transparent)]
-    Shader(#[from] ShaderError),
-    /// The driver does not take our shaders or buffers.
-    #[error(
-        "the graphics driver refused to draw this: {0}; update the driver or choose another adapter with WGPU_ADAPTER_NAME"
-    )]
-    Refused(String),
-    /// The driver was reset or the card is gone.
-    #[error("the graphics device was lost: open it again")]
-    DeviceLost,
-    /// The picture could not be read back.
-    #[error("the picture could not be read back from the graphics adapter: {0}")]
-    Readback(String),
-    /// More pictures were asked for than there are buffers.
-    #[error("{0} pictures are in flight already: take one first")]
-    Full(usize),
-}
+use crate::view::{Extent, View};
 
 /// Buffers of one part material.
 #[derive(Debug)]
@@ -68,9 +22,6 @@ struct PartBuffers {
     indices: wgpu::Buffer,
     count: u32,
 }
-
-/// Share of the picture's height that the flash square takes.
-const FLASH_SHARE: f32 = 0.25;
 
 /// Two triangles a cell. Keep in step with shaders/background.wgsl.
 const BACKDROP_VERTICES: u32 = 8 * 6 * 6;
@@ -96,9 +47,7 @@ pub struct Renderer {
     frame_group: wgpu::BindGroup,
     shadow_map: wgpu::TextureView,
     shadow_group: wgpu::BindGroup,
-    skin_maps: wgpu::BindGroup,
-    eye_maps: wgpu::BindGroup,
-    hair_maps: wgpu::BindGroup,
+    maps: MapGroups,
     targets: Option<Targets>,
 }
 
@@ -156,67 +105,9 @@ impl Renderer {
             usage: wgpu::BufferUsages::UNIFORM | wgpu::BufferUsages::COPY_DST,
             mapped_at_creation: false,
         });
-        let frame_group = group(device, &layouts.frame, &[frame.as_entire_binding()]);
-        let side = detail.shadow_map;
-        let shadow_map = texture(
-            device,
-            "shadow map",
-            (side, side),
-            DEPTH,
-            1,
-            wgpu::TextureUsages::TEXTURE_BINDING,
-        )
-        .create_view(&wgpu::TextureViewDescriptor::default());
-        let compare = device.create_sampler(&wgpu::SamplerDescriptor {
-            label: Some("shadow"),
-            compare: Some(wgpu::CompareFunction::LessEqual),
-            mag_filter: wgpu::FilterMode::Linear,
-            min_filter: wgpu::FilterMode::Linear,
-            ..Default::default()
-        });
-        let shadow_group = group(
-            device,
-            &layouts.shadow,
-            &[
-                wgpu::BindingResource::TextureView(&shadow_map),
-                wgpu::BindingResource::Sampler(&compare),
-            ],
-        );
-
-        let painted = maps::Maps::paint(head, &detail);
-        let eye_map = upload::image(gpu, "eye", painted.eye);
-        let hair_map = upload::image(gpu, "hair", painted.hair);
-        let colour_map = upload::image(gpu, "skin colour", painted.skin.colour);
-        let detail_map = upload::image(gpu, "skin detail", painted.skin.detail);
-        let sampler = device.create_sampler(&wgpu::SamplerDescriptor {
-            label: Some("maps"),
-            mag_filter: wgpu::FilterMode::Linear,
-            min_filter: wgpu::FilterMode::Linear,
-            mipmap_filter: if detail.anisotropy > 1 {
-                wgpu::MipmapFilterMode::Linear
-            } else {
-                wgpu::MipmapFilterMode::Nearest
-            },
-            anisotropy_clamp: detail.anisotropy,
-            ..Default::default()
-        });
-        let maps_group = |first, second| {
-            let view = wgpu::BindingResource::TextureView;
-            group(
-                device,
-                &layouts.maps,
-                &[
-                    wgpu::BindingResource::Sampler(&sampler),
-                    view(first),
-                    view(second),
-                ],
-            )
-        };
-        let (skin_maps, eye_maps, hair_maps) = (
-            maps_group(&colour_map, &detail_map),
-            maps_group(&eye_map, &eye_map),
-            maps_group(&hair_map, &hair_map),
-        );
+        let frame_group = bindings::group(device, &layouts.frame, &[frame.as_entire_binding()]);
+        let (shadow_map, shadow_group) = bindings::shadow(gpu, &layouts, &detail);
+        let maps = bindings::maps(gpu, &layouts, head, &detail);
 
         let mut pose = head.clone();
         pose.skin = Skin::default();
@@ -243,9 +134,7 @@ impl Renderer {
             frame_group,
             shadow_map,
             shadow_group,
-            skin_maps,
-            eye_maps,
-            hair_maps,
+            maps,
             targets: None,
         })
     }
@@ -309,7 +198,7 @@ impl Renderer {
             bytemuck::cast_slice::<SkinMoving, u8>(&self.skin.moving),
         );
         let open = self.openings.measure(&key_frame.skin);
-        let frame = self.frame_data(key_frame, view, size, &open);
+        let frame = frame::data(&self.pose, &self.extent, &open, key_frame, view, size);
         gpu.queue()
             .write_buffer(&self.frame, 0, bytemuck::bytes_of(&frame));
         self.shadow_pass(encoder);
@@ -323,55 +212,6 @@ impl Renderer {
             );
         }
         Ok(())
-    }
-
-    fn frame_data(
-        &self,
-        key_frame: &KeyFrame,
-        view: &View,
-        size: (u32, u32),
-        open: &Open,
-    ) -> Frame {
-        let framing = self.extent.frame(view.camera, size);
-        let studio = Studio::portrait(view.camera.yaw_rad());
-        let bodies = self.pose.bodies(&key_frame.state).map(Mat4::from);
-        let radius = self.pose.eye_radius;
-        let eye = self.pose.eye_centre;
-        let mut body_rows = [Mat4::IDENTITY.to_cols_array_2d(); 8];
-        for (row, body) in body_rows.iter_mut().zip(bodies) {
-            *row = body.to_cols_array_2d();
-        }
-        let direction = |lamp: &Lamp| lamp.direction.extend(lamp.half_angle).to_array();
-        let colour = |lamp: &Lamp| lamp.colour.extend(0.0).to_array();
-        let (middle, corner) = match view.background {
-            Background::Plain(c) => (srgb(c), srgb(c)),
-            Background::Studio(c) => (srgb(c) * 1.10, srgb(c) * 0.58),
-        };
-        let (width, height) = (size.0 as f32, size.1 as f32);
-        Frame {
-            clip_from_world: framing.clip_from_world.to_cols_array_2d(),
-            shadow_from_world: studio.shadow_from_world(&self.extent).to_cols_array_2d(),
-            head_from_world: bodies[Body::Skull as usize].inverse().to_cols_array_2d(),
-            bodies: body_rows,
-            eye: framing.eye.extend(studio.exposure).to_array(),
-            key_dir: direction(&studio.key),
-            fill_dir: direction(&studio.fill),
-            rim_dir: direction(&studio.rim),
-            half_key: half_key(studio.key.direction, framing.eye - self.extent.centre()).to_array(),
-            key_colour: colour(&studio.key),
-            fill_colour: colour(&studio.fill),
-            rim_colour: colour(&studio.rim),
-            ambient: studio.ambient.map(|row| row.to_array()),
-            mouth: open.mouth.to_array(),
-            mouth_height: [open.mouth_half_height, 0.0, 0.0, 0.0],
-            eyeballs: [eye, eye * Vec3::new(-1.0, 1.0, 1.0)].map(|c| c.extend(radius).to_array()),
-            lids: open.lids.map(|lid| lid.to_array()),
-            backdrop: [
-                middle.extend(width / height).to_array(),
-                corner.extend(0.0).to_array(),
-            ],
-            picture: [width, height, FLASH_SHARE, 0.0],
-        }
     }
 
     /// Depth from the key lamp: the skin casts shadows; the hair's would fall on the scalp.
@@ -416,7 +256,7 @@ impl Renderer {
         for (material, buffers) in self.parts.iter().filter(|(m, _)| *m == Material::Hair) {
             self.draw_material(&mut pass, *material, buffers);
         }
-        pass.set_bind_group(2, &self.skin_maps, &[]);
+        pass.set_bind_group(2, &self.maps.skin, &[]);
         self.draw_skin(&mut pass, &self.pipelines.skin, &self.skin_indices);
         let drawn = |m: Material| m != Material::Hair && (mouth_open || !in_mouth(m));
         for (material, buffers) in self.parts.iter().filter(|(m, _)| drawn(*m)) {
@@ -454,8 +294,8 @@ impl Renderer {
     ) {
         let p = &self.pipelines;
         let (pipeline, maps, instances) = match material {
-            Material::Hair => (&p.hair, Some(&self.hair_maps), self.detail.hair_shells),
-            Material::Eye => (&p.eye, Some(&self.eye_maps), 1),
+            Material::Hair => (&p.hair, Some(&self.maps.hair), self.detail.hair_shells),
+            Material::Eye => (&p.eye, Some(&self.maps.eye), 1),
             Material::Teeth => (&p.teeth, None, 1),
             Material::Gums => (&p.gums, None, 1),
             Material::Tongue => (&p.tongue, None, 1),
@@ -487,14 +327,6 @@ const DRAW_ORDER: [Material; 8] = [
 /// Half a gap between the lips that is no gap, mm: nothing of the mouth's inside is drawn then.
 const SHUT_MM: f32 = 0.02;
 
-/// The direction half-way between lamp and camera, and the visibility and Fresnel part of the glossy lobe there
-/// (see `gloss_lobe` in shaders/light.wgsl) for skin's roughness.
-fn half_key(lamp: Vec3, to_camera: Vec3) -> Vec4 {
-    let half = (lamp + to_camera.normalize_or(Vec3::Z)).normalize_or(Vec3::Z);
-    let cosine = lamp.dot(half);
-    half.extend(1.0 / ((cosine * cosine).max(0.1) * 3.2))
-}
-
 fn in_mouth(material: Material) -> bool {
     matches!(
         material,
@@ -520,26 +352,6 @@ fn clear_depth(
         }),
         stencil_ops: None,
     }
-}
-
-fn group(
-    device: &wgpu::Device,
-    layout: &wgpu::BindGroupLayout,
-    resources: &[wgpu::BindingResource<'_>],
-) -> wgpu::BindGroup {
-    let entries: Vec<wgpu::BindGroupEntry<'_>> = resources
-        .iter()
-        .enumerate()
-        .map(|(binding, resource)| wgpu::BindGroupEntry {
-            binding: binding as u32,
-            resource: resource.clone(),
-        })
-        .collect();
-    device.create_bind_group(&wgpu::BindGroupDescriptor {
-        label: None,
-        layout,
-        entries: &entries,
-    })
 }
 
 /// Whether the adapter can draw a picture of that size.

@@ -6,8 +6,9 @@ use std::sync::Arc;
 use mouthpiece_rig::{Head, KeyFrame};
 use wgpu::rwh::{HasDisplayHandle, HasWindowHandle};
 
+use crate::error::RenderError;
 use crate::gpu::{Gpu, GpuError};
-use crate::renderer::{RenderError, Renderer};
+use crate::renderer::Renderer;
 use crate::tier::Tier;
 use crate::view::View;
 

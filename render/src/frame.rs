@@ -1,0 +1,71 @@
+//! What the shaders are told of one picture: bodies, camera, lamps, openings, backdrop.
+
+use glam::{Mat4, Vec3, Vec4};
+use mouthpiece_rig::{Body, Head, KeyFrame};
+
+use crate::gpu_data::Frame;
+use crate::openings::Open;
+use crate::studio::{Lamp, Studio};
+use crate::view::{Background, Extent, View, srgb};
+
+/// Share of the picture's height that the flash square takes.
+const FLASH_SHARE: f32 = 0.25;
+
+/// The uniform block of one picture.
+pub(crate) fn data(
+    pose: &Head,
+    extent: &Extent,
+    open: &Open,
+    key_frame: &KeyFrame,
+    view: &View,
+    size: (u32, u32),
+) -> Frame {
+    let framing = extent.frame(view.camera, size);
+    let studio = Studio::portrait(view.camera.yaw_rad());
+    let bodies = pose.bodies(&key_frame.state).map(Mat4::from);
+    let radius = pose.eye_radius;
+    let eye = pose.eye_centre;
+    let mut body_rows = [Mat4::IDENTITY.to_cols_array_2d(); 8];
+    for (row, body) in body_rows.iter_mut().zip(bodies) {
+        *row = body.to_cols_array_2d();
+    }
+    let direction = |lamp: &Lamp| lamp.direction.extend(lamp.half_angle).to_array();
+    let colour = |lamp: &Lamp| lamp.colour.extend(0.0).to_array();
+    let (middle, corner) = match view.background {
+        Background::Plain(c) => (srgb(c), srgb(c)),
+        Background::Studio(c) => (srgb(c) * 1.10, srgb(c) * 0.58),
+    };
+    let (width, height) = (size.0 as f32, size.1 as f32);
+    Frame {
+        clip_from_world: framing.clip_from_world.to_cols_array_2d(),
+        shadow_from_world: studio.shadow_from_world(extent).to_cols_array_2d(),
+        head_from_world: bodies[Body::Skull as usize].inverse().to_cols_array_2d(),
+        bodies: body_rows,
+        eye: framing.eye.extend(studio.exposure).to_array(),
+        key_dir: direction(&studio.key),
+        fill_dir: direction(&studio.fill),
+        rim_dir: direction(&studio.rim),
+        half_key: half_key(studio.key.direction, framing.eye - extent.centre()).to_array(),
+        key_colour: colour(&studio.key),
+        fill_colour: colour(&studio.fill),
+        rim_colour: colour(&studio.rim),
+        ambient: studio.ambient.map(|row| row.to_array()),
+        mouth: open.mouth.to_array(),
+        mouth_height: [open.mouth_half_height, 0.0, 0.0, 0.0],
+        eyeballs: [eye, eye * Vec3::new(-1.0, 1.0, 1.0)].map(|c| c.extend(radius).to_array()),
+        lids: open.lids.map(|lid| lid.to_array()),
+        backdrop: [
+            middle.extend(width / height).to_array(),
+            corner.extend(0.0).to_array(),
+        ],
+        picture: [width, height, FLASH_SHARE, 0.0],
+    }
+}
+
+/// The direction half-way between lamp and camera, and the visibility and Fresnel part of the glossy lobe there
+/// (see `gloss_lobe` in shaders/light.wgsl) for skin's roughness.
+fn half_key(lamp: Vec3, to_camera: Vec3) -> Vec4 {
+    let half = (lamp + to_camera.normalize_or(Vec3::Z)).normalize_or(Vec3::Z);
+    let cosine = lamp.dot(half);
+    half.extend(1.0 / ((cosine * cosine).max(0.1) * 3.2))
+}
