@@ -77,7 +77,7 @@ impl Scene {
         free.count() as f32 / RAYS as f32
     }
 
-    /// Sets the occlusion of every vertex of `mesh`, on two threads: the result does not depend on
+    /// Dims the occlusion of every vertex of `mesh` by what stands round it, on two threads: the result does not depend on
     /// how the work is split.
     fn bake(&self, mesh: &mut Mesh, directions: &[Vec3; RAYS]) {
         let (positions, normals) = (&mesh.positions, &mesh.normals);
@@ -93,7 +93,9 @@ impl Scene {
                 });
             }
         });
-        mesh.occlusion = values;
+        for (kept, open) in mesh.occlusion.iter_mut().zip(values) {
+            *kept *= open;
+        }
     }
 }
 

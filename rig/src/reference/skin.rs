@@ -17,6 +17,8 @@ pub(super) struct Vertex {
     pub chart: Vec2,
     pub vermilion: f32,
     pub wet: f32,
+    /// Share of its light that reaches it through openings the mesh is too coarse to show.
+    pub lit: f32,
 }
 
 /// The half template while it grows.
@@ -34,6 +36,7 @@ impl Half {
             chart,
             vermilion,
             wet,
+            lit: 1.0,
         });
         self.vertices.len() - 1
     }
@@ -262,6 +265,7 @@ fn line_nostril(half: &mut Half, rim: &[usize], surface: &Surface) {
         rim.len(),
     );
     let up = vec3(0.8, 7.5, -2.5);
+    let first = half.vertices.len();
     let mut outer = rim.to_vec();
     for (rise, shrink) in [(0.0, 1.0), (0.8, 0.75), (1.6, 0.35)] {
         let centre = middle(&inner);
@@ -279,6 +283,9 @@ fn line_nostril(half: &mut Half, rim: &[usize], surface: &Surface) {
     let chart = half.vertices[rim[0]].chart;
     let apex = half.push(middle(&inner) + up * 1.9, chart, 0.0, 0.0);
     half.strip(&closed(&outer), &vec![apex; outer.len() + 1]);
+    for v in &mut half.vertices[first..] {
+        v.lit = 0.12;
+    }
 }
 
 fn closed(ring: &[usize]) -> Vec<usize> {
@@ -374,7 +381,7 @@ fn assemble(
         mesh: Mesh {
             normals: normals(&positions, &triangles),
             uvs: vertices.iter().map(|v| uv_of(v.chart)).collect(),
-            occlusion: vec![1.0; positions.len()],
+            occlusion: vertices.iter().map(|v| v.lit).collect(),
             positions,
             triangles,
         },
