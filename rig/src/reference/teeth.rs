@@ -95,7 +95,7 @@ fn tooth(crown: &Crown, along: Vec3, up: f32) -> Mesh {
     } else {
         out
     };
-    let mut mesh = shapes::outward(shapes::grid(18, 9, true, |u, v| {
+    let mut mesh = shapes::outward(shapes::grid(14, 7, true, |u, v| {
         let turn = std::f32::consts::TAU * u;
         // A rounded square round the tooth's axis; v = 0 at the middle of the biting edge.
         let (c, s) = (turn.cos(), turn.sin());

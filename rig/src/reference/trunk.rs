@@ -7,7 +7,7 @@ use crate::{Body, Material, Part};
 
 /// A plain crew-neck top.
 pub(super) fn cloth() -> Part {
-    let mesh = shapes::grid(96, 22, true, |u, v| {
+    let mesh = shapes::grid(64, 15, true, |u, v| {
         let turn = std::f32::consts::TAU * u;
         let (side, front) = (turn.sin(), turn.cos());
         let rib = if v < 0.12 {
