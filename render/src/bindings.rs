@@ -24,17 +24,23 @@ pub(crate) fn maps(gpu: &Gpu, layouts: &Layouts, head: &Head, detail: &Detail) -
     let hair = upload::image(gpu, "hair", painted.hair);
     let colour = upload::image(gpu, "skin colour", painted.skin.colour);
     let fine = upload::image(gpu, "skin detail", painted.skin.detail);
+    // Never in software: Mesa's rasteriser was seen to take minutes over one anisotropic frame.
+    let anisotropy = if gpu.is_software() {
+        1
+    } else {
+        detail.anisotropy
+    };
     let sampler = gpu.device().create_sampler(&wgpu::SamplerDescriptor {
         label: Some("maps"),
         mag_filter: wgpu::FilterMode::Linear,
         min_filter: wgpu::FilterMode::Linear,
         // In software a second level is a second read; anisotropic reads need it.
-        mipmap_filter: if detail.anisotropy > 1 {
+        mipmap_filter: if anisotropy > 1 {
             wgpu::MipmapFilterMode::Linear
         } else {
             wgpu::MipmapFilterMode::Nearest
         },
-        anisotropy_clamp: detail.anisotropy,
+        anisotropy_clamp: anisotropy,
         ..Default::default()
     });
     let bound = |first, second| {

@@ -13,8 +13,8 @@ use crate::muscle::{Merge, carried, merges};
 use crate::tissue::Tissue;
 use crate::{Control, Controls, Head, KeyFrame};
 
-/// Length of a step in ticks: 600 steps a second.
-pub const STEP_TICKS: i64 = 80;
+/// Length of a step in ticks: 480 steps a second.
+pub const STEP_TICKS: i64 = 100;
 const STEP_S: f32 = STEP_TICKS as f32 / TICK_RATE as f32;
 /// Damping per mass, 1/s: a little over critical for a vertex on its muscle.
 const DAMPING: f32 = 420.0;
@@ -304,38 +304,22 @@ impl Simulation {
         }
     }
 
-    /// Forces of the skin's own springs. Eight at a time: ends are gathered and forces scattered one
-    /// by one, but root and division run in wide registers.
+    /// Forces of the skin's own springs: each edge once, its first end's sum kept in a register.
     fn stretch(&mut self) {
-        const LANES: usize = 8;
         let stiffness = self.tissue.edge_stiffness;
-        let blocks = self.tissue.edges.chunks_exact(LANES);
-        for edge in blocks.remainder() {
-            let [a, b] = edge.ends.map(|i| i as usize);
-            let d = self.position[b] - self.position[a];
-            let strain = 1.0 - edge.rest_mm / d.length().max(1e-4);
-            let pull = d * (stiffness * strain.max(SLACK * strain));
-            self.force[a] += pull;
-            self.force[b] -= pull;
-        }
-        for block in blocks {
-            let mut d = [Vec3A::ZERO; LANES];
-            let mut gain = [0.0_f32; LANES];
-            for lane in 0..LANES {
-                let [a, b] = block[lane].ends.map(|i| i as usize);
-                d[lane] = self.position[b] - self.position[a];
-                gain[lane] = d[lane].length_squared();
+        let mut edges = self.tissue.edges.iter();
+        for (i, w) in self.tissue.starts.windows(2).enumerate() {
+            let p = self.position[i];
+            let mut sum = Vec3A::ZERO;
+            for edge in edges.by_ref().take((w[1] - w[0]) as usize) {
+                let other = edge.other as usize;
+                let d = self.position[other] - p;
+                let strain = 1.0 - edge.rest_mm / d.length_squared().max(1e-8).sqrt();
+                let pull = d * (stiffness * strain.max(SLACK * strain));
+                sum += pull;
+                self.force[other] -= pull;
             }
-            for lane in 0..LANES {
-                let strain = 1.0 - block[lane].rest_mm / gain[lane].max(1e-8).sqrt();
-                gain[lane] = stiffness * strain.max(SLACK * strain);
-            }
-            for lane in 0..LANES {
-                let [a, b] = block[lane].ends.map(|i| i as usize);
-                let pull = d[lane] * gain[lane];
-                self.force[a] += pull;
-                self.force[b] -= pull;
-            }
+            self.force[i] += sum;
         }
     }
 

@@ -37,10 +37,10 @@ pub(crate) struct Attachment {
     pub stiffness: f32,
 }
 
-/// A spring along an edge of the skin; at least its first end moves.
+/// A spring along an edge of the skin, seen from its end of the lower number.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Edge {
-    pub ends: [u32; 2],
+    pub other: u32,
     pub rest_mm: f32,
 }
 
@@ -52,7 +52,10 @@ pub(crate) struct Tissue {
     pub vertices: Vec<u32>,
     /// How many of them move; the rest is the fixed rim that edges end at.
     pub movable: usize,
+    /// The edges of each movable vertex to those after it, one vertex after the other.
     pub edges: Vec<Edge>,
+    /// Where each movable vertex's edges start among them, and where the last one's end.
+    pub starts: Vec<u32>,
     /// Per movable vertex: stiffness to the bone, skull and mandible together.
     pub bone: Vec<f32>,
     /// Vertices that the mandible takes along, with its share of that stiffness.
@@ -97,7 +100,7 @@ impl Tissue {
         for (new, &old) in vertices.iter().enumerate() {
             number[old as usize] = new as u32;
         }
-        let mut edges = Vec::new();
+        let (mut edges, mut starts) = (Vec::new(), vec![0]);
         for i in 0..movable {
             let old = vertices[i];
             for &other in &neighbours[old as usize] {
@@ -108,12 +111,10 @@ impl Tissue {
                 let j = number[other as usize];
                 if j > i as u32 {
                     let rest_mm = rest[old as usize].distance(rest[other as usize]);
-                    edges.push(Edge {
-                        ends: [i as u32, j],
-                        rest_mm,
-                    });
+                    edges.push(Edge { other: j, rest_mm });
                 }
             }
+            starts.push(edges.len() as u32);
         }
 
         let sides = sides(head);
@@ -152,6 +153,7 @@ impl Tissue {
             vertices,
             movable,
             edges,
+            starts,
             attachments,
             lids,
             edge_stiffness: EDGE,
@@ -164,10 +166,12 @@ impl Tissue {
     }
 }
 
-/// Whether the skin there moves at all: the face from the brows to the throat, ear to ear.
+/// Whether the skin there moves at all: the face from the lid crease to the throat. No muscle reaches
+/// the brows yet, nor the side of the head before the ear.
 fn moves(p: Vec3) -> bool {
     let ahead = p.z > 8.0 + 0.35 * (p.y + 30.0).abs().min(60.0);
-    ahead && (-92.0..66.0).contains(&p.y) && p.x.abs() < 70.0
+    let side = if p.y > -8.0 { 58.0 } else { 70.0 };
+    ahead && (-92.0..53.0).contains(&p.y) && p.x.abs() < side
 }
 
 /// Interleaves the bits of a place on a 4 mm grid, so that neighbours lie close in memory.
