@@ -8,6 +8,7 @@ use glam::{Affine3A, Vec3, Vec3A, vec3};
 
 use crate::Head;
 use crate::head::LIP_LEVELS;
+use crate::tissue::Tissue;
 
 /// Levels of a lip's column that can touch the other lip.
 const TOUCHING: std::ops::RangeInclusive<usize> = 1..=6;
@@ -35,8 +36,15 @@ pub(crate) struct Bodies<'a> {
 }
 
 impl Contact {
-    /// `number` maps skin vertices to simulated ones.
-    pub(crate) fn new(head: &Head, number: impl Fn(u32) -> u32) -> Self {
+    /// The contacts among the vertices of `head` that move.
+    pub(crate) fn new(head: &Head, tissue: &Tissue) -> Self {
+        let column = |skin: &[u32; LIP_LEVELS]| {
+            let mut moving = [0; LIP_LEVELS];
+            for (number, &vertex) in moving.iter_mut().zip(skin) {
+                *number = tissue.moving(vertex)?;
+            }
+            Some(moving)
+        };
         let columns = head
             .lips
             .upper
@@ -44,11 +52,11 @@ impl Contact {
             .zip(&head.lips.lower)
             .skip(1)
             .take(head.lips.upper.len().saturating_sub(2))
-            .map(|(u, l)| (u.map(&number), l.map(&number)))
+            .filter_map(|(upper, lower)| Some((column(upper)?, column(lower)?)))
             .collect();
         let mut lids = [Vec::new(), Vec::new()];
         for lid in &head.lids {
-            lids[usize::from(!lid.left)].push(number(lid.vertex));
+            lids[usize::from(!lid.left)].extend(tissue.moving(lid.vertex));
         }
         Self {
             columns,

@@ -10,7 +10,7 @@ use glam::{Affine3A, Quat, Vec3, Vec3A, vec3};
 use crate::contact::{Bodies, Contact};
 use crate::key_frame::TICK_RATE;
 use crate::muscle::{Merge, carried, merges};
-use crate::tissue::Tissue;
+use crate::tissue::{EDGE, Tissue};
 use crate::{Control, Controls, Head, KeyFrame};
 
 /// Length of a step in ticks: 480 steps a second.
@@ -67,11 +67,7 @@ impl Simulation {
             .iter()
             .map(|&v| head.skin.mesh.positions[v as usize].into())
             .collect();
-        let mut number = vec![0; head.skin.mesh.positions.len()];
-        for (new, &old) in tissue.vertices.iter().enumerate() {
-            number[old as usize] = new as u32;
-        }
-        let contact = Contact::new(&head, |v| number[v as usize]);
+        let contact = Contact::new(&head, &tissue);
         let rest_points: Vec<Vec3> = head
             .fibres
             .iter()
@@ -306,7 +302,6 @@ impl Simulation {
 
     /// Forces of the skin's own springs: each edge once, its first end's sum kept in a register.
     fn stretch(&mut self) {
-        let stiffness = self.tissue.edge_stiffness;
         let mut edges = self.tissue.edges.iter();
         for (i, w) in self.tissue.starts.windows(2).enumerate() {
             let p = self.position[i];
@@ -315,7 +310,7 @@ impl Simulation {
                 let other = edge.other as usize;
                 let d = self.position[other] - p;
                 let strain = 1.0 - edge.rest_mm / d.length_squared().max(1e-8).sqrt();
-                let pull = d * (stiffness * strain.max(SLACK * strain));
+                let pull = d * (EDGE * strain.max(SLACK * strain));
                 sum += pull;
                 self.force[other] -= pull;
             }

@@ -14,7 +14,7 @@ use crate::muscle::Contraction;
 use crate::{Head, Muscle};
 
 /// Stiffness per mass of a skin edge.
-const EDGE: f32 = 34_000.0;
+pub(crate) const EDGE: f32 = 34_000.0;
 /// Of the spring to the bone where the skin lies thin on it, and where it lies on soft tissue.
 const BONE_THIN: f32 = 60_000.0;
 const BONE_SOFT: f32 = 1_500.0;
@@ -50,6 +50,8 @@ pub(crate) struct Edge {
 pub(crate) struct Tissue {
     /// Skin vertex of each simulated one.
     pub vertices: Vec<u32>,
+    /// Simulated vertex of each skin vertex; `u32::MAX` where it is none.
+    number: Vec<u32>,
     /// How many of them move; the rest is the fixed rim that edges end at.
     pub movable: usize,
     /// The edges of each movable vertex to those after it, one vertex after the other.
@@ -63,7 +65,6 @@ pub(crate) struct Tissue {
     pub attachments: Vec<Attachment>,
     /// `(simulated vertex, index into Head::lids, stiffness)`.
     pub lids: Vec<(u32, u32, f32)>,
-    pub edge_stiffness: f32,
 }
 
 /// Where on a lip or beside it a vertex lies: above the slit, below it, or neither.
@@ -151,13 +152,19 @@ impl Tissue {
             bone,
             jawed,
             vertices,
+            number,
             movable,
             edges,
             starts,
             attachments,
             lids,
-            edge_stiffness: EDGE,
         }
+    }
+
+    /// The simulated vertex of a skin vertex, where that one moves.
+    pub(crate) fn moving(&self, skin_vertex: u32) -> Option<u32> {
+        let number = self.number[skin_vertex as usize];
+        ((number as usize) < self.movable).then_some(number)
     }
 
     /// Springs of all kinds.

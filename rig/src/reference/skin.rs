@@ -68,7 +68,8 @@ pub(super) fn build(
     eyes: &Eyes,
 ) -> Result<(Skin, Lips, Vec<Lid>), ReferenceError> {
     let mut half = Half::default();
-    let (mut upper, mut lower) = lips(&mut half, surface);
+    let columns = [mouth::lip(surface, 1.0), mouth::lip(surface, -1.0)];
+    let (mut upper, mut lower) = lips(&mut half, &columns);
     let mut lid_loops = lid_loops(&mut half, surface);
     let nostril = nostril_loop(&mut half, surface);
     for line in [
@@ -90,7 +91,7 @@ pub(super) fn build(
     half.triangles.extend(&template.triangles);
 
     smooth_ear(&mut half);
-    line_mouth(&mut half, &mut upper, &mut lower, surface);
+    line_mouth(&mut half, &mut upper, &mut lower, &columns);
     line_lids(&mut half, &mut lid_loops, surface, eyes);
     line_nostril(&mut half, &nostril, surface);
     Ok(assemble(&half, &upper, &lower, surface, eyes, &lid_loops))
@@ -119,11 +120,11 @@ fn smooth_ear(half: &mut Half) {
 }
 
 /// Places both lips' columns and the slit between them.
-fn lips(half: &mut Half, surface: &Surface) -> (LipRows, LipRows) {
+fn lips(half: &mut Half, columns: &[Vec<mouth::Column>; 2]) -> (LipRows, LipRows) {
     let last = mouth::STATIONS - 1;
     let mut rows = [Vec::new(), Vec::new()];
-    for (row, sign) in rows.iter_mut().zip([1.0, -1.0]) {
-        for column in mouth::lip(surface, sign) {
+    for (row, lip) in rows.iter_mut().zip(columns) {
+        for column in lip {
             let mut numbers = [usize::MAX; LIP_LEVELS];
             for level in 0..4 {
                 let corner = row.len() == last;
@@ -173,16 +174,21 @@ fn dedup(mut points: Vec<usize>) -> Vec<usize> {
 }
 
 /// Extrudes the lips' inner side and completes the columns with its vertices.
-fn line_mouth(half: &mut Half, upper: &mut LipRows, lower: &mut LipRows, surface: &Surface) {
+fn line_mouth(
+    half: &mut Half,
+    upper: &mut LipRows,
+    lower: &mut LipRows,
+    columns: &[Vec<mouth::Column>; 2],
+) {
     let last = mouth::STATIONS - 1;
-    for (rows, sign) in [(&mut *upper, 1.0), (&mut *lower, -1.0)] {
-        for (station, column) in mouth::lip(surface, sign).iter().enumerate() {
-            for (level, number) in rows[station].iter_mut().enumerate().skip(4) {
-                *number = if sign < 0.0 && station == last {
-                    usize::MAX
-                } else {
-                    half.push(column.points[level], column.chart[3], 1.0, 1.0)
-                };
+    for (rows, lip, own) in [
+        (&mut *upper, &columns[0], last + 1),
+        (&mut *lower, &columns[1], last),
+    ] {
+        // At the corner the lower lip has no vertices of its own.
+        for (row, column) in rows.iter_mut().zip(lip).take(own) {
+            for (level, number) in row.iter_mut().enumerate().skip(4) {
+                *number = half.push(column.points[level], column.chart[3], 1.0, 1.0);
             }
         }
     }
