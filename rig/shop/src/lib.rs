@@ -1,2 +1,4 @@
 //! The head shop, offline: scans in, heads out (HEADSHOP 5 and 6); and the reference head itself.
 #![forbid(unsafe_code)]
+
+pub mod mesh;
