@@ -23,8 +23,6 @@ pub(crate) fn data(
     let framing = extent.frame(view.camera, size);
     let studio = Studio::portrait(view.camera.yaw_rad());
     let bodies = pose.bodies(&key_frame.state).map(Mat4::from);
-    let radius = pose.eye_radius;
-    let eye = pose.eye_centre;
     let mut body_rows = [Mat4::IDENTITY.to_cols_array_2d(); 8];
     for (row, body) in body_rows.iter_mut().zip(bodies) {
         *row = body.to_cols_array_2d();
@@ -52,7 +50,9 @@ pub(crate) fn data(
         ambient: studio.ambient.map(|row| row.to_array()),
         mouth: open.mouth.to_array(),
         mouth_height: [open.mouth_half_height, 0.0, 0.0, 0.0],
-        eyeballs: [eye, eye * Vec3::new(-1.0, 1.0, 1.0)].map(|c| c.extend(radius).to_array()),
+        eyeballs: pose
+            .eyes
+            .map(|eye| eye.centre.extend(eye.radius).to_array()),
         lids: open.lids.map(|lid| lid.to_array()),
         backdrop: [
             middle.extend(width / height).to_array(),

@@ -165,6 +165,7 @@ impl PartGeometry {
             _ => (vec![1.0; mesh.positions.len()], mesh.normals.clone()),
         };
         for (i, p) in mesh.positions.iter().enumerate() {
+            let (bodies, share) = part.between(part.weight[i]);
             let uv = match part.material {
                 Material::Hair => maps::hair::uv(*p),
                 _ => mesh.uvs[i],
@@ -173,13 +174,8 @@ impl PartGeometry {
                 rest: p.to_array(),
                 normal: normals[i].to_array(),
                 uv: uv.to_array(),
-                shares: [
-                    unorm(mesh.occlusion[i]),
-                    unorm(part.weight[i]),
-                    unorm(edge[i]),
-                    0,
-                ],
-                bodies: [part.bodies[0] as u8, part.bodies[1] as u8, 0, 0],
+                shares: [unorm(mesh.occlusion[i]), unorm(share), unorm(edge[i]), 0],
+                bodies: [bodies[0] as u8, bodies[1] as u8, 0, 0],
             });
         }
         // Of an eyeball only the front is ever seen.

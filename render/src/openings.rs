@@ -1,7 +1,7 @@
 //! The mouth's and the eyes' openings, measured on the drawn skin each frame: what lets light into
 //! the mouth (HABER 4.1: teeth and tongue darken as it closes) and how far the lids shade the eyes.
 
-use glam::{Vec3, Vec4, vec3, vec4};
+use glam::{Vec3, Vec4, vec4};
 use mouthpiece_rig::{Head, LIP_LEVELS};
 
 /// Level of a lip's column where the lips touch; see `rig::Lips`.
@@ -43,8 +43,8 @@ impl Openings {
             .zip(&head.lips.lower)
             .map(|(upper, lower)| (upper[CONTACT], lower[CONTACT]))
             .collect();
-        let eyes = [head.eye_centre, head.eye_centre * vec3(-1.0, 1.0, 1.0)];
-        let radius = head.eye_radius.max(1.0);
+        let eyes = head.eyes.map(|eye| eye.centre);
+        let radius = head.eyes[0].radius.max(1.0);
         // The inner edge of the margin, which the lids hold wholly. Upper lids turn down, lower ones up.
         let mut lids: [Vec<u32>; 4] = Default::default();
         let wet = |vertex: u32| head.skin.wet.get(vertex as usize).is_some_and(|w| *w > 0.5);

@@ -296,7 +296,7 @@ impl Renderer {
         let (pipeline, maps, instances) = match material {
             Material::Hair => (&p.hair, Some(&self.maps.hair), self.detail.hair_shells),
             Material::Eye => (&p.eye, Some(&self.maps.eye), 1),
-            Material::Teeth => (&p.teeth, None, 1),
+            Material::Teeth | Material::Bone => (&p.teeth, None, 1),
             Material::Gums => (&p.gums, None, 1),
             Material::Tongue => (&p.tongue, None, 1),
             Material::Cavity => (&p.cavity, None, 1),

@@ -125,7 +125,7 @@ impl Extent {
             max = max.max(p);
         };
         // The chin is the lowest skin that stands clear of the neck: in front of the eyeballs' rear.
-        let face_z = head.eye_centre.z - 2.0 * head.eye_radius.max(1.0);
+        let face_z = head.eyes[0].centre.z - 2.0 * head.eyes[0].radius.max(1.0);
         let chin = skin
             .mesh
             .positions

@@ -6,9 +6,9 @@
 
 use glam::{Affine3A, Vec3, Vec3A, vec3};
 
-use crate::Head;
 use crate::head::LIP_LEVELS;
 use crate::tissue::Tissue;
+use crate::{Eye, Head, Placement};
 
 /// Levels of a lip's column that can touch the other lip.
 const TOUCHING: std::ops::RangeInclusive<usize> = 1..=6;
@@ -25,8 +25,8 @@ pub(crate) struct Contact {
     columns: Vec<([u32; LIP_LEVELS], [u32; LIP_LEVELS])>,
     /// Vertices near each eye: left, right.
     lids: [Vec<u32>; 2],
-    eye_centre: Vec3,
-    eye_radius: f32,
+    eyes: [Eye; 2],
+    bite: Placement,
 }
 
 /// The skin's state that contact corrects.
@@ -61,8 +61,8 @@ impl Contact {
         Self {
             columns,
             lids,
-            eye_centre: head.eye_centre,
-            eye_radius: head.eye_radius,
+            eyes: head.eyes,
+            bite: head.bite,
         }
     }
 
@@ -97,10 +97,12 @@ impl Contact {
             for &i in upper[2..].iter().chain(&lower[2..]) {
                 let i = i as usize;
                 let p = skin.position[i];
-                let up = in_front(p.into(), UPPER_EDGE_Y, 14.0, UPPER_FRONT_Z);
-                let q = unjawed.transform_point3(p.into());
+                // The arches are described where they stand on the reference head.
+                let q = self.bite.reference(p.into());
+                let up = in_front(q, UPPER_EDGE_Y, 14.0, UPPER_FRONT_Z);
+                let q = self.bite.reference(unjawed.transform_point3(p.into()));
                 let low = in_front(q, LOWER_EDGE_Y - 14.0, 14.0, LOWER_FRONT_Z);
-                let push = up.max(low);
+                let push = up.max(low) * self.bite.scale.z;
                 if push > 0.0 {
                     skin.position[i].z += push;
                     skin.velocity[i].z = skin.velocity[i].z.max(0.0);
@@ -110,9 +112,9 @@ impl Contact {
     }
 
     fn eyeballs(&self, skin: &mut Bodies<'_>) {
-        for (list, side) in self.lids.iter().zip([1.0, -1.0]) {
-            let centre = Vec3A::from(self.eye_centre * vec3(side, 1.0, 1.0));
-            let least = self.eye_radius + EYE_CLEARANCE_MM;
+        for (list, eye) in self.lids.iter().zip(&self.eyes) {
+            let centre = Vec3A::from(eye.centre);
+            let least = eye.radius + EYE_CLEARANCE_MM;
             for &i in list {
                 let i = i as usize;
                 let out = skin.position[i] - centre;

@@ -1,9 +1,10 @@
 //! The head as data: skin mesh, rigid parts, the bodies they hang on, and where each body is for given controls.
 
 use glam::{Affine3A, Quat, Vec2, Vec3, vec3};
+use serde::{Deserialize, Serialize};
 
-use crate::muscle::Fibre;
-use crate::{Control, Controls, KeyFrame};
+use crate::muscle::{Fibre, MuscleGrid};
+use crate::{Calibration, Control, Controls, KeyFrame};
 
 /// A frame of reference that parts hang on; poses come from [`Head::bodies`].
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
@@ -19,15 +20,28 @@ pub enum Body {
     EyeL,
     /// The subject's right eyeball.
     EyeR,
-    /// Back and body of the tongue.
-    TongueBody,
-    /// Blade and tip of the tongue.
+    /// Root of the tongue: moves with the mandible, and a little of its own.
+    TongueRoot,
+    /// Blade of the tongue.
+    TongueBlade,
+    /// Tip of the tongue.
     TongueTip,
 }
 
 impl Body {
+    /// All of them, in the order of their numbers.
+    pub const ALL: [Self; 8] = [
+        Self::Trunk,
+        Self::Skull,
+        Self::Mandible,
+        Self::EyeL,
+        Self::EyeR,
+        Self::TongueRoot,
+        Self::TongueBlade,
+        Self::TongueTip,
+    ];
     /// How many there are.
-    pub const COUNT: usize = 7;
+    pub const COUNT: usize = Self::ALL.len();
 }
 
 /// What a part is made of: the renderer picks a shader by it.
@@ -47,6 +61,8 @@ pub enum Material {
     /// Lashes and brows.
     Lash,
     Cloth,
+    /// Skull and mandible: drawn only where asked for.
+    Bone,
 }
 
 /// A triangle mesh; all per-vertex arrays have the same length.
@@ -64,27 +80,49 @@ pub struct Mesh {
     pub triangles: Vec<[u32; 3]>,
 }
 
-/// A mesh on one or two bodies.
+/// A mesh on a body, or along a chain of them.
 #[derive(Clone, Debug)]
 pub struct Part {
     /// Node name, as in a head file: `teeth_upper`, `eye_l`, `tongue` …
-    pub name: &'static str,
+    pub name: String,
     /// What it is made of.
     pub material: Material,
     /// Its shape.
     pub mesh: Mesh,
-    /// The two bodies it hangs on.
-    pub bodies: [Body; 2],
-    /// Share of the second body, per vertex.
+    /// The bodies it hangs on, in order: one at least.
+    pub bodies: Vec<Body>,
+    /// Place of each vertex along that chain: 0 the first body, 1 the second, 0.25 a quarter of the
+    /// second and the rest of the first, and so on.
     pub weight: Vec<f32>,
 }
 
-/// The skin: the mesh that the simulation moves.
+impl Part {
+    /// The two bodies that a place along the chain lies between, and the share of the second.
+    #[must_use]
+    pub fn between(&self, weight: f32) -> ([Body; 2], f32) {
+        let last = self.bodies.len().saturating_sub(1);
+        let weight = weight.clamp(0.0, last as f32);
+        let first = (weight as usize).min(last.saturating_sub(1));
+        let body = |i: usize| self.bodies.get(i.min(last)).copied().unwrap_or(Body::Skull);
+        ([body(first), body(first + 1)], weight - first as f32)
+    }
+}
+
+/// The skin: the mesh that the simulation moves, control mesh of the drawn surface.
 #[derive(Clone, Debug, Default)]
 pub struct Skin {
-    /// Shape at rest. `uv` is the cylindrical chart: `u = 0.5 + longitude / 2 pi` (0.5 straight
-    /// ahead, growing to the subject's left), `v = (150 - y) / 256` with y in mm.
+    /// Shape at rest, welded. Of the reference head `uv` is the cylindrical chart: `u = 0.5 +
+    /// longitude / 2 pi` (0.5 straight ahead, growing to the subject's left), `v = (150 - y) / 256`
+    /// with y in mm; heads fitted from it keep its uv.
     pub mesh: Mesh,
+    /// Texture coordinates of each triangle's corners: those of the vertices, but for the ears,
+    /// which are islands of their own, and past 1 where a triangle crosses the chart's seam.
+    pub wedges: Vec<[Vec2; 3]>,
+    /// Edges that stay sharp when the surface is subdivided: contact lines of the lips, margins of
+    /// the lids.
+    pub creases: Vec<[u32; 2]>,
+    /// Where each vertex lies on the reference head, mm: anatomical constants are functions of it.
+    pub reference: Vec<Vec3>,
     /// Share of the skull against the trunk, per vertex: 1 on the head, falling to 0 down the neck.
     pub weight: Vec<f32>,
     /// 1 on the red of the lips, 0 off it, per vertex.
@@ -121,41 +159,151 @@ pub struct Lid {
     pub hold: f32,
 }
 
+/// A place on a triangle of a mesh.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct SurfacePoint {
+    /// The triangle's corners.
+    pub vertices: [u32; 3],
+    /// Their shares, adding up to 1.
+    pub shares: [f32; 3],
+}
+
+impl SurfacePoint {
+    /// The place for given vertices.
+    #[must_use]
+    pub fn on(&self, positions: &[Vec3]) -> Vec3 {
+        self.vertices
+            .iter()
+            .zip(self.shares)
+            .filter_map(|(v, share)| Some(*positions.get(*v as usize)? * share))
+            .sum()
+    }
+}
+
+/// What a landmark lies on.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Layer {
+    /// The skin.
+    Skin,
+    /// The part `skull`.
+    Skull,
+    /// The part `mandible`.
+    Mandible,
+}
+
+/// A point by its name in Farkas, Anthropometry of the Head and Face (1994); `_l` and `_r` are the
+/// subject's sides.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Landmark {
+    /// `prn`, `en_l` …
+    pub name: String,
+    /// What it lies on.
+    pub layer: Layer,
+    /// Where.
+    pub at: SurfacePoint,
+    /// Of a landmark on bone: the skin landmark over it (HEADSHOP 5.2).
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub of: Option<String>,
+}
+
+/// An eyeball.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Eye {
+    /// Its centre, mm.
+    pub centre: Vec3,
+    /// Its radius, mm.
+    pub radius: f32,
+}
+
+/// From the reference head to this one, for what keeps its form: teeth and tongue (HEADSHOP 5.2).
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Placement {
+    /// Factor along each axis.
+    pub scale: Vec3,
+    /// Added afterwards, mm.
+    pub shift: Vec3,
+}
+
+impl Default for Placement {
+    fn default() -> Self {
+        Self {
+            scale: Vec3::ONE,
+            shift: Vec3::ZERO,
+        }
+    }
+}
+
+impl Placement {
+    /// The place on this head.
+    #[must_use]
+    pub fn place(&self, reference: Vec3) -> Vec3 {
+        reference * self.scale + self.shift
+    }
+
+    /// The place on the reference head.
+    #[must_use]
+    pub fn reference(&self, place: Vec3) -> Vec3 {
+        (place - self.shift) / self.scale
+    }
+}
+
+/// An image, row by row from the upper left.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub struct ColourMap {
+    /// Texels across.
+    pub width: usize,
+    /// Texels down.
+    pub height: usize,
+    /// Red, green, blue of each texel, sRGB.
+    pub rgb: Vec<u8>,
+}
+
 /// The reference or any other head, at rest.
 #[derive(Clone, Debug)]
 pub struct Head {
     /// The skin.
     pub skin: Skin,
-    /// Everything rigid: `eye_l`, `eye_r`, `teeth_upper`, `teeth_lower`, `gums_upper`,
-    /// `gums_lower`, `tongue`, `cavity`, `hair`, `lashes_l`, `lashes_r`, `cloth`.
+    /// Everything else that is drawn: `eye_l`, `eye_r`, `teeth_upper`, `teeth_lower`, `gums_upper`,
+    /// `gums_lower`, `tongue`, `cavity`, `hair`, `lashes_l`, `lashes_r`, `cloth`; and the bones,
+    /// `skull` and `mandible`.
     pub parts: Vec<Part>,
     /// Lines on the skin that the colour map is painted by.
     pub features: Vec<Feature>,
+    /// Named points on skin and bones.
+    pub landmarks: Vec<Landmark>,
     /// The lips' columns.
     pub lips: Lips,
     /// What the lids carry.
     pub lids: Vec<Lid>,
-    /// Muscle fibres, left and right.
+    /// Muscles as they are painted on the skin.
+    pub muscles: Vec<MuscleGrid>,
+    /// Their fibres in the space between skin and bones: rebuilt from `muscles`, never stored.
     pub fibres: Vec<Fibre>,
+    /// The subject's left and right eyeball.
+    pub eyes: [Eye; 2],
+    /// Where teeth and tongue stand.
+    pub bite: Placement,
     /// A point of the axis through the condyles, mm: the axis runs along x.
     pub condyle_axis: Vec3,
     /// What the head turns about.
     pub neck_pivot: Vec3,
-    /// Centre of the subject's left eyeball; the right one mirrors it.
-    pub eye_centre: Vec3,
-    /// Radius of the eyeballs, mm.
-    pub eye_radius: f32,
-    /// What the tongue's body turns about, and what its blade turns about.
-    pub tongue_root: Vec3,
-    /// See `tongue_root`.
-    pub tongue_blade: Vec3,
+    /// How this head's mouth answers to its muscles.
+    pub calibration: Calibration,
+    /// Colour of the skin over its `uv`; none where nothing is known of it.
+    pub colour: Option<ColourMap>,
 }
 
 /// A line on the skin, as points of its chart (`uv`).
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
 pub struct Feature {
     /// `brow_upper_l`, `brow_lower_l`, `hairline`, `lid_crease_l` … and `_r`.
-    pub name: &'static str,
+    pub name: String,
     /// Its points in order.
     pub points: Vec<Vec2>,
 }
@@ -173,14 +321,18 @@ impl Head {
         let mandible = skull * self.mandible(controls[Control::Jaw]);
         let gaze = Quat::from_rotation_y(controls[Control::GazeYaw])
             * Quat::from_rotation_x(-controls[Control::GazePitch]);
-        let [tongue_body, tongue_tip] = self.tongue(controls);
+        let tongue = self.tongue(controls);
         let mut bodies = [Affine3A::IDENTITY; Body::COUNT];
         bodies[Body::Skull as usize] = skull;
         bodies[Body::Mandible as usize] = mandible;
-        bodies[Body::EyeL as usize] = skull * about(self.eye_centre, gaze);
-        bodies[Body::EyeR as usize] = skull * about(self.eye_centre * vec3(-1.0, 1.0, 1.0), gaze);
-        bodies[Body::TongueBody as usize] = mandible * tongue_body;
-        bodies[Body::TongueTip as usize] = mandible * tongue_tip;
+        bodies[Body::EyeL as usize] = skull * about(self.eyes[0].centre, gaze);
+        bodies[Body::EyeR as usize] = skull * about(self.eyes[1].centre, gaze);
+        for (body, pose) in [Body::TongueRoot, Body::TongueBlade, Body::TongueTip]
+            .into_iter()
+            .zip(tongue)
+        {
+            bodies[body as usize] = mandible * pose;
+        }
         bodies
     }
 
@@ -192,19 +344,27 @@ impl Head {
         Affine3A::from_translation(slide) * about(self.condyle_axis, Quat::from_rotation_x(jaw_rad))
     }
 
-    /// Body and tip of the tongue in the mandible's frame: rigid transforms, as HABER 4.1 has them.
-    fn tongue(&self, controls: &Controls) -> [Affine3A; 2] {
+    /// Root, blade and tip of the tongue in the mandible's frame. HABER 4.1 has the tongue rigid; here
+    /// it bends along this chain. The root stays near the hyoid and takes half of the blade's motion.
+    fn tongue(&self, controls: &Controls) -> [Affine3A; 3] {
         let (tip, out, body) = (
             controls[Control::TongueTip],
             controls[Control::TongueOut],
             controls[Control::TongueBody],
         );
-        let root = about(self.tongue_root, Quat::from_rotation_x(-0.22 * body));
-        let lift = Affine3A::from_translation(vec3(0.0, 5.0 * body, 9.0 * out - 4.0 * body));
-        let blade = about(self.tongue_blade, Quat::from_rotation_x(-0.55 * tip));
-        let raise = Affine3A::from_translation(vec3(0.0, 3.5 * tip, 2.0 * tip));
-        let tongue_body = lift * root;
-        [tongue_body, tongue_body * raise * blade]
+        let millimetres = |v: Vec3| Affine3A::from_translation(v * self.bite.scale);
+        let pivot = |p: Vec3, pitch: f32| about(self.bite.place(p), Quat::from_rotation_x(-pitch));
+        let lift = |share: f32| {
+            millimetres(vec3(0.0, 5.0 * body, 9.0 * out - 4.0 * body) * share)
+                * pivot(TONGUE_ROOT, 0.22 * body * share)
+        };
+        let blade = lift(1.0);
+        let raise = millimetres(vec3(0.0, 3.5 * tip, 2.0 * tip));
+        [
+            lift(0.5),
+            blade,
+            blade * raise * pivot(TONGUE_BLADE, 0.55 * tip),
+        ]
     }
 
     /// The head at rest, as a key frame at time 0.
@@ -217,6 +377,32 @@ impl Head {
         }
     }
 
+    /// The named part, where this head has it.
+    #[must_use]
+    pub fn part(&self, name: &str) -> Option<&Part> {
+        self.parts.iter().find(|p| p.name == name)
+    }
+
+    /// The vertices that a landmark is a place among.
+    #[must_use]
+    pub fn layer(&self, layer: Layer) -> &[Vec3] {
+        let part = |name| self.part(name).map_or(&[][..], |p| &p.mesh.positions[..]);
+        match layer {
+            Layer::Skin => &self.skin.mesh.positions,
+            Layer::Skull => part("skull"),
+            Layer::Mandible => part("mandible"),
+        }
+    }
+
+    /// Where the skin's landmark of that name lies, mm.
+    #[must_use]
+    pub fn landmark(&self, name: &str) -> Option<Vec3> {
+        self.landmarks
+            .iter()
+            .find(|l| l.layer == Layer::Skin && l.name == name)
+            .map(|l| l.at.on(&self.skin.mesh.positions))
+    }
+
     /// The named line on the skin, where this head has it.
     #[must_use]
     pub fn feature(&self, name: &str) -> Option<&Feature> {
@@ -227,6 +413,10 @@ impl Head {
 /// How far the condyles slide forward as the jaw opens (order of size from Vatikiotis-Bateson and
 /// Ostry: translation is linear in rotation; the figure itself is a judgement).
 const JAW_SLIDE_MM_PER_RAD: f32 = 14.0;
+
+/// What the tongue's root and its blade turn about on the reference head, mm.
+const TONGUE_ROOT: Vec3 = vec3(0.0, -46.0, 45.0);
+const TONGUE_BLADE: Vec3 = vec3(0.0, -36.0, 80.0);
 
 /// Rotation about a point.
 fn about(pivot: Vec3, rotation: Quat) -> Affine3A {

@@ -35,9 +35,12 @@ mod tissue;
 pub use articulation::{Articulation, Tongue};
 pub use calibration::{Calibration, CalibrationError};
 pub use control::{Control, Controls, Muscle};
-pub use head::{Body, Feature, Head, LIP_LEVELS, Lid, Lips, Material, Mesh, Part, Skin, normals};
+pub use head::{
+    Body, ColourMap, Eye, Feature, Head, LIP_LEVELS, Landmark, Layer, Lid, Lips, Material, Mesh,
+    Part, Placement, Skin, SurfacePoint, normals,
+};
 pub use key_frame::{KeyFrame, TICK_RATE};
 pub use measure::{Measures, measure};
-pub use muscle::{Contraction, Fibre};
+pub use muscle::{Contraction, Fibre, GridPoint, MuscleGrid};
 pub use reference::ReferenceError;
 pub use simulation::{STEP_TICKS, Simulation};

@@ -64,8 +64,8 @@ pub fn measure(head: &Head, frame: &KeyFrame) -> Measures {
         .iter()
         .flat_map(|column| &column[1..=4])
         .map(|&v| skin[v as usize])
-        .filter(|p| p.x.abs() < FRONT_TEETH_MM)
-        .map(|p| p.distance(upper_edge(p.x)))
+        .filter(|p| head.bite.reference(*p).x.abs() < FRONT_TEETH_MM)
+        .map(|p| p.distance(head.bite.place(upper_edge(head.bite.reference(p).x))))
         .fold(f32::MAX, f32::min);
     Measures {
         aperture_mm,

@@ -7,9 +7,9 @@
 //! into the orbicularis oris, their insertions take its fibres along ([`merges`]).
 
 use glam::{Affine3A, Vec3, vec3};
-use serde::Deserialize;
+use serde::{Deserialize, Serialize};
 
-use crate::{Control, Controls, Muscle};
+use crate::{Control, Controls, Muscle, SurfacePoint};
 
 const TABLE: &str = include_str!("../data/muscles.json");
 /// Shortening of a linear fibre at full contraction: skeletal muscle manages about a third.
@@ -21,7 +21,8 @@ const PROTRUSION_MM: f32 = 12.0;
 const OUTER_PROTRUSION: f32 = 0.12;
 
 /// How a fibre contracts.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
 pub enum Contraction {
     /// Towards its origin, the first point.
     Linear,
@@ -97,6 +98,31 @@ impl Fibre {
             *q = q.lerp(straight, tension);
         }
     }
+}
+
+/// A point of a muscle as it is painted on the skin (HEADSHOP 5.2).
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct GridPoint {
+    /// The place on the skin that it lies under.
+    pub at: SurfacePoint,
+    /// How far from the skin (0) to the bone under it (1).
+    pub depth: f32,
+    /// Share of the mandible against the skull in its motion.
+    pub mandible: f32,
+}
+
+/// A muscle, or its belly of one side, painted on the skin as a grid: one row of points per fibre.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct MuscleGrid {
+    /// Which.
+    pub muscle: Muscle,
+    /// Its fibres; linear ones begin at their origin.
+    pub fibres: Vec<Vec<GridPoint>>,
+    /// Per fibre of a sphincter: its axis; empty for linear muscles.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub axes: Vec<Contraction>,
 }
 
 /// A control point of a sphincter that a linear muscle's insertion takes along.

@@ -5,7 +5,7 @@
 
 use std::sync::Arc;
 
-use glam::{Affine3A, Quat, Vec3, Vec3A, vec3};
+use glam::{Affine3A, Quat, Vec3, Vec3A};
 
 use crate::contact::{Bodies, Contact};
 use crate::key_frame::TICK_RATE;
@@ -267,10 +267,10 @@ impl Simulation {
         }
         for &(i, k, stiffness) in &self.tissue.lids {
             let lid = self.head.lids[k as usize];
-            let (side, closed) = if lid.left {
-                (1.0, self.state[Control::LidL])
+            let (eye, closed) = if lid.left {
+                (&self.head.eyes[0], self.state[Control::LidL])
             } else {
-                (-1.0, self.state[Control::LidR])
+                (&self.head.eyes[1], self.state[Control::LidR])
             };
             // The upper lid follows the gaze down and up.
             let follow = if lid.turn < 0.0 {
@@ -280,8 +280,7 @@ impl Simulation {
             };
             let gaze = follow * self.state[Control::GazePitch];
             let turn = Quat::from_rotation_x(-(lid.turn * closed * LID_OVERSHOOT + gaze));
-            let out =
-                self.rest[i as usize] - Vec3A::from(self.head.eye_centre * vec3(side, 1.0, 1.0));
+            let out = self.rest[i as usize] - Vec3A::from(eye.centre);
             self.force[i as usize] += (turn.mul_vec3a(out) - out) * stiffness;
         }
     }

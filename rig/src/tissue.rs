@@ -78,7 +78,8 @@ enum Side {
 impl Tissue {
     pub(crate) fn new(head: &Head) -> Self {
         let rest = &head.skin.mesh.positions;
-        let movable_skin: Vec<bool> = (0..rest.len()).map(|i| moves(rest[i])).collect();
+        let reference = &head.skin.reference;
+        let movable_skin: Vec<bool> = reference.iter().map(|p| moves(*p)).collect();
         let mut neighbours = vec![Vec::new(); rest.len()];
         for t in &head.skin.mesh.triangles {
             for i in 0..3 {
@@ -119,9 +120,13 @@ impl Tissue {
         }
 
         let sides = sides(head);
-        let at = |i: usize| rest[vertices[i] as usize];
+        // Springs to bone by what lies under that place of the reference head.
+        let at = |i: usize| reference[vertices[i] as usize];
         let attachments = (0..movable)
-            .flat_map(|i| attach(head, i, at(i), sides[vertices[i] as usize]))
+            .flat_map(|i| {
+                let vertex = vertices[i] as usize;
+                attach(head, i, rest[vertex], sides[vertex])
+            })
             .collect();
         let lids = head
             .lids
@@ -191,7 +196,7 @@ fn morton(p: Vec3) -> u64 {
 
 /// Which lip a skin vertex belongs to; off the lips' columns, by the height of the slit there.
 fn sides(head: &Head) -> Vec<Side> {
-    let rest = &head.skin.mesh.positions;
+    let rest = &head.skin.reference;
     let corner = head
         .lips
         .upper

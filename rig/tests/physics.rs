@@ -145,7 +145,7 @@ fn lids_close_over_the_eyes() {
     let frame = settled(&mut Simulation::new(Arc::clone(head())), &controls, 150);
     // A ray from the pupil forwards must meet skin.
     for side in [1.0, -1.0] {
-        let pupil = head().eye_centre * Vec3::new(side, 1.0, 1.0);
+        let pupil = head().eyes[usize::from(side < 0.0)].centre;
         let covered = head().skin.mesh.triangles.iter().any(|t| {
             let [a, b, c] = t.map(|i| frame.skin[i as usize]);
             let inside = |p: Vec3, q: Vec3| (q - p).truncate().perp_dot((pupil - p).truncate());

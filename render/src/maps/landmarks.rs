@@ -24,7 +24,7 @@ impl Landmarks {
     pub(crate) fn of(head: &Head) -> Self {
         let skin = &head.skin;
         let positions = &skin.mesh.positions;
-        let eye = head.eye_centre;
+        let eye = head.eyes[0].centre;
         let (mut sum, mut share) = (Vec3::ZERO, 0.0_f32);
         for ((p, red), wet) in positions.iter().zip(&skin.vermilion).zip(&skin.wet) {
             let weight = red * (1.0 - wet);

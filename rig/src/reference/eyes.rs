@@ -50,12 +50,12 @@ impl Eyes {
             self.centre * vec3(-1.0, 1.0, 1.0),
             iris,
         );
-        let part = |name, mesh: Mesh, body| Part {
-            name,
+        let part = |name: &str, mesh: Mesh, body| Part {
+            name: name.into(),
             material: Material::Eye,
             weight: vec![0.0; mesh.positions.len()],
             mesh,
-            bodies: [body, body],
+            bodies: vec![body],
         };
         vec![
             part("eye_l", left, Body::EyeL),

@@ -53,10 +53,10 @@ pub(super) fn cap(surface: &Surface) -> Part {
     }));
     let weight = vec![0.0; mesh.positions.len()];
     Part {
-        name: "hair",
+        name: "hair".into(),
         material: Material::Hair,
         mesh,
-        bodies: [Body::Skull, Body::Skull],
+        bodies: vec![Body::Skull],
         weight,
     }
 }

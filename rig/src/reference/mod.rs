@@ -20,7 +20,7 @@ mod trunk;
 use glam::vec3;
 use thiserror::Error;
 
-use crate::{Feature, Head};
+use crate::{Calibration, CalibrationError, Eye, Feature, Head, Placement};
 use surface::{Surface, chart_of, uv_of};
 
 /// What can be wrong with the data that the crate carries; none of it is a user's doing.
@@ -40,6 +40,9 @@ pub enum ReferenceError {
     /// The muscle table has a wrong row.
     #[error("rig/data/muscles.json: {0}; restore it from the repository")]
     Muscles(serde_json::Error),
+    /// The calibration is damaged.
+    #[error("rig/data/calibration.json: {0}; restore it from the repository")]
+    Calibration(#[from] CalibrationError),
     /// The template could not be triangulated.
     #[error("the skin template cannot be triangulated: {0}")]
     Triangulation(#[from] spade::InsertionError),
@@ -66,12 +69,17 @@ impl Head {
             lips,
             lids,
             fibres: Vec::new(),
+            landmarks: Vec::new(),
+            muscles: Vec::new(),
+            eyes: [1.0, -1.0].map(|side| Eye {
+                centre: eyes.centre * vec3(side, 1.0, 1.0),
+                radius: eyes.radius,
+            }),
+            bite: Placement::default(),
             condyle_axis: vec3(0.0, 13.77, 25.43),
             neck_pivot: vec3(0.0, -45.0, 5.0),
-            eye_centre: eyes.centre,
-            eye_radius: eyes.radius,
-            tongue_root: vec3(0.0, -46.0, 45.0),
-            tongue_blade: vec3(0.0, -36.0, 80.0),
+            calibration: Calibration::reference()?,
+            colour: None,
         };
         head.fibres = crate::muscle::fibres(|x, y| surface.seen_from_front(x, y))
             .map_err(ReferenceError::Muscles)?;
@@ -106,7 +114,7 @@ fn features(surface: &Surface) -> Vec<Feature> {
                 .into_iter()
                 .zip([1.0, -1.0])
                 .map(move |(name, side)| Feature {
-                    name,
+                    name: name.into(),
                     points: line
                         .iter()
                         .map(|p| uv_of(chart_of(*p * vec3(side, 1.0, 1.0))))

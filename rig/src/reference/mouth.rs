@@ -121,10 +121,10 @@ fn cavity() -> Part {
         .map(|p| shapes::ramp(-24.0, -42.0, p.y))
         .collect();
     Part {
-        name: "cavity",
+        name: "cavity".into(),
         material: Material::Cavity,
         mesh,
-        bodies: [Body::Skull, Body::Mandible],
+        bodies: vec![Body::Skull, Body::Mandible],
         weight,
     }
 }
@@ -156,13 +156,13 @@ fn tongue() -> Part {
     let weight = mesh
         .positions
         .iter()
-        .map(|p| shapes::ramp(70.0, 92.0, p.z))
+        .map(|p| shapes::ramp(46.0, 74.0, p.z) + shapes::ramp(74.0, 95.0, p.z))
         .collect();
     Part {
-        name: "tongue",
+        name: "tongue".into(),
         material: Material::Tongue,
         mesh,
-        bodies: [Body::TongueBody, Body::TongueTip],
+        bodies: vec![Body::TongueRoot, Body::TongueBlade, Body::TongueTip],
         weight,
     }
 }

@@ -377,11 +377,14 @@ fn assemble(
         .collect();
     lids.extend(right);
     eyes.relax(&mut positions, &mut lids);
-    let skin = Skin {
+    let mut skin = Skin {
         weight: positions
             .iter()
             .map(|p| shapes::ramp(-103.0, -74.0, p.y + 0.12 * (p.z - 60.0).min(0.0)))
             .collect(),
+        wedges: Vec::new(),
+        creases: Vec::new(),
+        reference: positions.clone(),
         vermilion: vertices.iter().map(|v| v.vermilion).collect(),
         wet: vertices.iter().map(|v| v.wet).collect(),
         mesh: Mesh {
@@ -392,5 +395,22 @@ fn assemble(
             triangles,
         },
     };
+    let uv = |i: u32| skin.mesh.uvs[i as usize];
+    skin.wedges = skin
+        .mesh
+        .triangles
+        .iter()
+        .map(|t| across_seam(t.map(uv)))
+        .collect();
+    for columns in [&lips.upper, &lips.lower] {
+        skin.creases
+            .extend(columns.windows(2).map(|w| [w[0][3], w[1][3]]));
+    }
     (skin, lips, lids)
+}
+
+/// A triangle's texture coordinates, past 1 where it crosses the chart's seam.
+fn across_seam(uv: [Vec2; 3]) -> [Vec2; 3] {
+    let high = uv[0].x.max(uv[1].x).max(uv[2].x);
+    uv.map(|c| if high - c.x > 0.5 { c + Vec2::X } else { c })
 }

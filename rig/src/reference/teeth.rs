@@ -65,10 +65,10 @@ pub(super) fn parts() -> Vec<Part> {
         ] {
             let weight = vec![0.0; mesh.positions.len()];
             parts.push(Part {
-                name,
+                name: name.into(),
                 material,
                 mesh,
-                bodies: [body, body],
+                bodies: vec![body],
                 weight,
             });
         }

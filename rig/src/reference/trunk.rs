@@ -29,10 +29,10 @@ pub(super) fn cloth() -> Part {
     });
     let weight = vec![0.0; mesh.positions.len()];
     Part {
-        name: "cloth",
+        name: "cloth".into(),
         material: Material::Cloth,
         mesh,
-        bodies: [Body::Trunk, Body::Trunk],
+        bodies: vec![Body::Trunk],
         weight,
     }
 }
