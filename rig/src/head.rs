@@ -4,10 +4,11 @@ use glam::{Affine3A, Quat, Vec2, Vec3, vec3};
 use serde::{Deserialize, Serialize};
 
 use crate::muscle::{Fibre, MuscleGrid};
-use crate::{Calibration, Control, Controls, KeyFrame};
+use crate::{Calibration, Control, Controls, KeyFrame, LipStencils};
 
 /// A frame of reference that parts hang on; poses come from [`Head::bodies`].
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
 #[repr(usize)]
 pub enum Body {
     /// Shoulders and the base of the neck: does not move.
@@ -45,7 +46,8 @@ impl Body {
 }
 
 /// What a part is made of: the renderer picks a shader by it.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
 #[allow(missing_docs, reason = "the names say it")]
 pub enum Material {
     Skin,
@@ -138,7 +140,8 @@ pub const LIP_LEVELS: usize = 7;
 /// The skin vertices of both lips as columns from the subject's right corner to the left one; column
 /// `i` of the upper lip stands over column `i` of the lower. Level 0 is the vermilion border, 1 the
 /// crest, 2 the brim, 3 the contact line, 4 to 6 the inner side. At the corners both share vertices.
-#[derive(Clone, Debug, Default)]
+#[derive(Clone, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
 pub struct Lips {
     /// Columns of the upper lip.
     pub upper: Vec<[u32; LIP_LEVELS]>,
@@ -147,7 +150,8 @@ pub struct Lips {
 }
 
 /// A skin vertex that an eyelid carries.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
 pub struct Lid {
     /// Which.
     pub vertex: u32,
@@ -278,6 +282,8 @@ pub struct Head {
     pub landmarks: Vec<Landmark>,
     /// The lips' columns.
     pub lips: Lips,
+    /// Where the lips' columns are drawn; [`LipStencils::default`] for a new head.
+    pub lip_stencils: LipStencils,
     /// What the lids carry.
     pub lids: Vec<Lid>,
     /// Muscles as they are painted on the skin.

@@ -12,6 +12,7 @@
 //! | `contact` | lips, teeth, lids and eyeballs stop each other |
 //! | `simulation` | steps all of it in time |
 //! | `key_frame` | the whole state at an instant |
+//! | `subdivision` | the surface that is drawn over the simulated mesh |
 //! | `measure` | aperture, width, protrusion, jaw of a key frame |
 //! | `occlusion` | ambient light that reaches each vertex at rest |
 //!
@@ -30,6 +31,7 @@ mod muscle;
 mod occlusion;
 mod reference;
 mod simulation;
+mod subdivision;
 mod tissue;
 
 pub use articulation::{Articulation, Tongue};
@@ -44,3 +46,7 @@ pub use measure::{Measures, measure};
 pub use muscle::{Contraction, Fibre, GridPoint, MuscleGrid};
 pub use reference::ReferenceError;
 pub use simulation::{STEP_TICKS, Simulation};
+pub use subdivision::{
+    Detail, LipStencils, Stencils, Subdivision, SubdivisionError, Topology, fit_control,
+    limit_stencils,
+};

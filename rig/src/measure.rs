@@ -6,7 +6,7 @@ use crate::contact::upper_edge;
 use crate::head::LIP_LEVELS;
 use crate::{Control, Head, KeyFrame};
 
-/// What a mouth does, measured on the drawn skin.
+/// What a mouth does, measured on the skin as it is drawn: on the limit of its subdivision.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Measures {
     /// Largest free gap between the lips over the middle 80 % of the mouth's width, mm; below 0
@@ -32,8 +32,9 @@ const FRONT_TEETH_MM: f32 = 8.0;
 /// Measures the mouth of `frame`, which is a frame of `head`.
 #[must_use]
 pub fn measure(head: &Head, frame: &KeyFrame) -> Measures {
-    let (upper, lower) = (&head.lips.upper, &head.lips.lower);
-    let skin = &frame.skin;
+    let lips = head.lip_stencils.of(head);
+    let (upper, lower) = (&lips.upper, &lips.lower);
+    let skin = &lips.at(&frame.skin);
     let (Some(first), Some(last)) = (upper.first(), upper.last()) else {
         return Measures::default();
     };
@@ -51,7 +52,7 @@ pub fn measure(head: &Head, frame: &KeyFrame) -> Measures {
         .fold(f32::MIN, f32::max);
 
     let middle = upper.len() / 2;
-    let rest = &head.skin.mesh.positions;
+    let rest = lips.at(&head.skin.mesh.positions);
     let forward = |columns: &[[u32; LIP_LEVELS]]| {
         let v = columns[middle][1] as usize;
         skin[v].z - rest[v].z

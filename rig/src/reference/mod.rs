@@ -67,6 +67,7 @@ impl Head {
             parts,
             features: features(&surface),
             lips,
+            lip_stencils: crate::LipStencils::default(),
             lids,
             fibres: Vec::new(),
             landmarks: Vec::new(),
