@@ -1,4 +1,11 @@
 //! The head shop, offline: scans in, heads out (HEADSHOP 5 and 6); and the reference head itself.
 #![forbid(unsafe_code)]
 
+pub mod closest;
+pub mod fit;
+pub mod hair;
 pub mod mesh;
+pub mod warp;
+
+mod lines;
+mod noise;
