@@ -58,10 +58,13 @@ pub enum CalibrationError {
         /// Terms in the file.
         found: usize,
     },
+    /// A term that is no finite number, or a mouth without width.
+    #[error("calibration holds a number that cannot be; make it anew from the head")]
+    Number,
 }
 
 /// How one head's mouth answers to its muscles.
-#[derive(Clone, Debug, Serialize, Deserialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Calibration {
     /// Distance between the corners of the mouth at rest, mm.
@@ -84,10 +87,19 @@ impl Calibration {
     /// # Errors
     /// Where the text is no calibration of this version.
     pub fn from_json(text: &str) -> Result<Self, CalibrationError> {
-        let calibration: Self = serde_json::from_str(text)?;
-        match calibration.quadratics.iter().find(|q| q.len() != TERMS) {
-            Some(q) => Err(CalibrationError::Terms { found: q.len() }),
-            None => Ok(calibration),
+        serde_json::from_str::<Self>(text)?.checked()
+    }
+
+    /// Itself, when it is one that this version can work with.
+    pub(crate) fn checked(self) -> Result<Self, CalibrationError> {
+        if let Some(q) = self.quadratics.iter().find(|q| q.len() != TERMS) {
+            return Err(CalibrationError::Terms { found: q.len() });
+        }
+        let finite = self.quadratics.iter().flatten().all(|t| t.is_finite());
+        if finite && self.rest_width_mm.is_finite() && self.rest_width_mm > 0.0 {
+            Ok(self)
+        } else {
+            Err(CalibrationError::Number)
         }
     }
 

@@ -5,6 +5,7 @@
 //! | `articulation` | what a mouth should do, for any head |
 //! | `calibration` | an articulation turned into one head's muscles |
 //! | `control` | one number per muscle, jaw, tongue, lid, gaze and head angle |
+//! | `file` | a head as a .glb file |
 //! | `head` | a head as data: skin, rigid parts, the bodies they hang on |
 //! | `reference` | the head that is built in, made by program |
 //! | `muscle` | fibres: linear and sphincter (HABER 5.1) |
@@ -24,6 +25,7 @@ mod articulation;
 mod calibration;
 mod contact;
 mod control;
+mod file;
 mod head;
 mod key_frame;
 mod measure;
@@ -37,6 +39,7 @@ mod tissue;
 pub use articulation::{Articulation, Tongue};
 pub use calibration::{Calibration, CalibrationError};
 pub use control::{Control, Controls, Muscle};
+pub use file::HeadError;
 pub use head::{
     Body, ColourMap, Eye, Feature, Head, LIP_LEVELS, Landmark, Layer, Lid, Lips, Material, Mesh,
     Part, Placement, Skin, SurfacePoint, normals,

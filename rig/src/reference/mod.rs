@@ -89,6 +89,12 @@ impl Head {
     }
 }
 
+/// The reference head's fibres, for heads without muscles painted on their skin.
+pub(crate) fn fibres() -> Result<Vec<crate::Fibre>, ReferenceError> {
+    let surface = Surface::load()?;
+    crate::muscle::fibres(|x, y| surface.seen_from_front(x, y)).map_err(ReferenceError::Muscles)
+}
+
 /// The lines that the colour map is painted by, both sides.
 fn features(surface: &Surface) -> Vec<Feature> {
     let curves = &surface.curves;
