@@ -106,6 +106,10 @@ pub enum Fault {
     )]
     TwoHeads { first: usize, second: usize },
     #[error(
+        "the scan is a mirror image (its landmarks fit a mirrored face, and its triangles face inwards): negate one axis where it was exported"
+    )]
+    Mirrored,
+    #[error(
         "the pieces that are neither specks nor far away have too little surface ({0} triangles): clean the scan, so that its pieces hang together"
     )]
     Fragments(usize),

@@ -110,15 +110,16 @@ pub fn read(path: impl AsRef<Path>) -> Result<Reading, ScanError> {
     let Some(format) = Format::of(path, &bytes) else {
         return Err(Fault::UnknownFormat.at(&name, Place::Whole));
     };
-    read_bytes(format, &bytes, folder).map_err(|e| e.fault.at(&name, e.place))
+    read_bytes(format, &name, &bytes, folder)
 }
 
-/// The scan in `bytes`; errors name no file.
+/// The scan in `bytes`, which errors call `name`.
 ///
 /// # Errors
 /// When they are not a usable mesh of that format.
 pub fn read_bytes(
     format: Format,
+    name: &str,
     bytes: &[u8],
     side: &(impl Side + ?Sized),
 ) -> Result<Reading, ScanError> {
@@ -133,7 +134,7 @@ pub fn read_bytes(
     };
     builder
         .and_then(|builder| builder.finish().map_err(Found::from))
-        .map_err(|found| found.in_file("the scan"))
+        .map_err(|found| found.in_file(name))
 }
 
 struct Borrowed<'a, S: Side + ?Sized>(&'a S);
