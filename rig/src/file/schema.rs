@@ -15,17 +15,23 @@ pub(super) const VERSION: u64 = 1;
 /// Its key in the extras.
 pub(super) const KEY: &str = "mouthpiece";
 
-/// Everything that is not a list of vertices; lengths in mm, vertices by their `_SIM`.
+/// Everything that is not a list of vertices; lengths in mm, vertices by their `_SIM`. Some programs
+/// (pygltflib) leave out empty lists.
 #[derive(Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub(super) struct Extras {
     pub schema: u64,
     pub skin: SkinRecord,
+    #[serde(default)]
     pub parts: Vec<PartRecord>,
+    #[serde(default)]
     pub features: Vec<Feature>,
+    #[serde(default)]
     pub landmarks: Vec<Landmark>,
     pub lips: Lips,
+    #[serde(default)]
     pub lids: Vec<Lid>,
+    #[serde(default)]
     pub muscles: Vec<MuscleGrid>,
     pub eyes: [Eye; 2],
     pub bite: Placement,
@@ -40,6 +46,7 @@ pub(super) struct Extras {
 pub(super) struct SkinRecord {
     /// How many there are, welded.
     pub vertices: usize,
+    #[serde(default)]
     pub creases: Vec<[u32; 2]>,
 }
 
@@ -83,6 +90,13 @@ impl Extras {
             neck_pivot: head.neck_pivot,
             calibration: head.calibration.clone(),
         }
+    }
+
+    /// As JSON, with no more digits than its numbers need.
+    pub(super) fn json(&self) -> Value {
+        // Only lists, numbers and text with text for keys: this cannot fail.
+        let text = serde_json::to_string(self).unwrap_or_default();
+        serde_json::from_str(&text).unwrap_or_default()
     }
 
     /// Those in a file, and the node that holds them.

@@ -257,7 +257,7 @@ impl Writer {
         document.nodes.push(Node {
             name: Some(ROOT.into()),
             children: (0..root).collect(),
-            extras: Some(json!({ KEY: Extras::of(head) })),
+            extras: Some(json!({ KEY: Extras::of(head).json() })),
             ..Node::default()
         });
         document.scenes.push(Scene {

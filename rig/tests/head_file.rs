@@ -1,0 +1,256 @@
+//! A head as a file: what is written is read again, by us and after other programs, and what is no
+//! head is refused in words.
+
+mod like;
+
+use std::collections::HashSet;
+use std::path::{Path, PathBuf};
+use std::process::Command;
+use std::sync::OnceLock;
+
+use glam::Vec3;
+use like::{assert_alike, decorated, reference};
+use mouthpiece_rig::{Head, HeadError};
+use proptest::prelude::*;
+
+/// Of positions that went through metres and another program's floats, mm.
+const CLOSE_MM: f32 = 1e-4;
+
+fn written() -> &'static [u8] {
+    static BYTES: OnceLock<Vec<u8>> = OnceLock::new();
+    BYTES.get_or_init(|| decorated().write())
+}
+
+fn scripts() -> PathBuf {
+    Path::new(env!("CARGO_MANIFEST_DIR")).join("../tests")
+}
+
+/// Runs another program's script; nothing where it or what it needs is not there.
+fn script(program: &str, name: &str, args: &[&Path]) -> Option<std::process::Output> {
+    let output = Command::new(program)
+        .arg(scripts().join(name))
+        .args(args)
+        .output();
+    match output {
+        Ok(output) if output.status.code() != Some(2) => Some(output),
+        Ok(output) => {
+            eprint!("skipped: {}", String::from_utf8_lossy(&output.stderr));
+            None
+        }
+        Err(error) => {
+            eprintln!("skipped: {program} cannot be run: {error}");
+            None
+        }
+    }
+}
+
+#[test]
+fn what_is_written_is_read_again() {
+    let head = decorated();
+    let read = Head::read(written()).unwrap();
+    assert_alike(&head, &read, 1e-5);
+    assert_eq!(head.colour, read.colour);
+    assert_eq!(head.skin.mesh.triangles, read.skin.mesh.triangles);
+    assert_eq!(head.skin.reference, read.skin.reference);
+    assert_alike(
+        reference(),
+        &Head::read(&reference().write()).unwrap(),
+        1e-5,
+    );
+}
+
+#[test]
+fn the_same_head_is_the_same_bytes() {
+    assert!(decorated().write() == written());
+}
+
+/// Needs node and the npm package gltf-validator (in the folder or in $NODE_PATH).
+#[test]
+fn khronos_finds_no_errors() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("head.glb");
+    std::fs::write(&path, written()).unwrap();
+    if let Some(output) = script("node", "gltf_check.mjs", &[&path]) {
+        let said = String::from_utf8_lossy(&output.stdout);
+        assert!(output.status.success(), "{said}");
+        assert!(said.contains("0 errors"), "{said}");
+    }
+}
+
+/// Needs python3 with numpy; pygltflib and trimesh where they are.
+#[test]
+fn other_programs_may_save_it() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("head.glb");
+    std::fs::write(&path, written()).unwrap();
+    let Some(output) = script("python3", "head_file.py", &[&path, folder.path()]) else {
+        return;
+    };
+    let said = String::from_utf8_lossy(&output.stdout);
+    if !output.status.success() {
+        panic!("{said}{}", String::from_utf8_lossy(&output.stderr));
+    }
+    let head = decorated();
+    for name in ["pygltflib", "trimesh", "shuffled"] {
+        let saved = folder.path().join(name).with_extension("glb");
+        if !saved.exists() {
+            eprintln!("skipped: {name} is not installed");
+            continue;
+        }
+        let read = Head::load(&saved).unwrap();
+        assert_alike(&head, &read, CLOSE_MM);
+        assert_eq!(head.colour, read.colour, "{name}");
+    }
+}
+
+/// Puts other JSON into the file.
+fn with_json(change: impl Fn(&str) -> String) -> Vec<u8> {
+    let bytes = written();
+    let length = u32::from_le_bytes(bytes[12..16].try_into().unwrap()) as usize;
+    let mut json = change(std::str::from_utf8(&bytes[20..20 + length]).unwrap()).into_bytes();
+    json.resize(json.len().next_multiple_of(4), b' ');
+    let rest = &bytes[20 + length..];
+    let whole = (20 + json.len() + rest.len()) as u32;
+    let mut out = bytes[..8].to_vec();
+    out.extend(whole.to_le_bytes());
+    out.extend((json.len() as u32).to_le_bytes());
+    out.extend(&bytes[16..20]);
+    out.extend(json);
+    out.extend(rest);
+    out
+}
+
+fn refused(bytes: &[u8]) -> String {
+    match Head::read(bytes) {
+        Ok(_) => panic!("a broken head was read"),
+        Err(error) => error.to_string(),
+    }
+}
+
+#[test]
+fn what_is_broken_is_named_with_its_mend() {
+    let bytes = written();
+    let replaced = |from: &str, to: &str| {
+        refused(&with_json(|json| {
+            assert!(json.contains(from), "{from}");
+            json.replace(from, to)
+        }))
+    };
+    for (said, words) in [
+        (refused(b""), ["no binary glTF", "mouthpiece head fit"]),
+        (
+            refused(b"solid scan\nendsolid"),
+            ["no binary glTF", "saved as glTF binary"],
+        ),
+        (
+            refused(&bytes[..16]),
+            ["ends in the middle", "copy it again"],
+        ),
+        (
+            refused(&bytes[..bytes.len() / 2]),
+            ["ends in the middle", "copy it again"],
+        ),
+        (
+            replaced("\"mouthpiece\":", "\"other\":"),
+            ["but no head", "mouthpiece head fit"],
+        ),
+        (
+            replaced("\"schema\":1", "\"schema\":7"),
+            ["schema 7", "reads 1"],
+        ),
+        (
+            replaced("\"_SIM\"", "\"_MIS\""),
+            ["_SIM: it is missing", "custom attributes"],
+        ),
+        (
+            replaced("\"name\":\"tongue\"", "\"name\":\"lingua\""),
+            ["part `tongue`", "missing"],
+        ),
+        (
+            replaced("\"bite\":", "\"byte\":"),
+            ["extras", "unknown field `byte`"],
+        ),
+        (
+            replaced("\"radius\":", "\"radius\":-"),
+            ["left eye", "radius"],
+        ),
+        (
+            replaced("\"shares\":[0.25,", "\"shares\":[0.75,"),
+            ["landmark `prn`", "no triangle"],
+        ),
+        (
+            replaced("\"lids\":[{\"hold\":1.0", "\"lids\":[{\"hold\":7.0"),
+            ["lids[0]", "hold"],
+        ),
+        (replaced("\"VEC3\"", "\"VEC2\""), ["node `skin`", "VEC3"]),
+    ] {
+        for word in words {
+            assert!(said.contains(word), "{said:?} does not say {word:?}");
+        }
+        assert!(!said.contains('\n') && said.len() < 400, "{said}");
+    }
+}
+
+#[test]
+fn a_file_that_cannot_be_read_is_named() {
+    let error = Head::load(Path::new("no/such/head.glb")).unwrap_err();
+    assert!(matches!(error, HeadError::File { .. }));
+    assert!(
+        error.to_string().starts_with("no/such/head.glb: "),
+        "{error}"
+    );
+}
+
+#[test]
+fn a_vertex_that_is_not_finite_is_refused() {
+    let mut head = decorated();
+    head.skin.mesh.positions[17] = Vec3::new(0.0, f32::NAN, 0.0);
+    let said = refused(&head.write());
+    assert!(said.contains("node `skin`, attribute POSITION"), "{said}");
+}
+
+#[test]
+fn parts_have_names_of_their_own() {
+    let head = Head::read(written()).unwrap();
+    let names: HashSet<_> = head.parts.iter().map(|p| &p.name).collect();
+    assert_eq!(names.len(), head.parts.len());
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig { cases: 200, failure_persistence: None, ..ProptestConfig::default() })]
+
+    /// Any bytes are a head or an error, never a panic: cut, overwritten, with numbers changed.
+    #[test]
+    fn damage_never_panics(
+        cut in proptest::option::of(0.0..1.0_f64),
+        changes in prop::collection::vec((0.0..1.0_f64, any::<u8>()), 0..12),
+    ) {
+        let mut bytes = written().to_vec();
+        for (place, value) in changes {
+            let place = (place * bytes.len() as f64) as usize;
+            bytes[place] = value;
+        }
+        if let Some(cut) = cut {
+            bytes.truncate((cut * bytes.len() as f64) as usize);
+        }
+        if let Err(error) = Head::read(&bytes) {
+            prop_assert!(!error.to_string().is_empty());
+        }
+    }
+
+    /// The same where it hurts most: digits of the JSON.
+    #[test]
+    fn other_numbers_never_panic(changes in prop::collection::vec((0.0..1.0_f64, 0..10_u8), 1..20)) {
+        let bytes = with_json(|json| {
+            let mut json = json.as_bytes().to_vec();
+            for (place, digit) in &changes {
+                let from = (place * json.len() as f64) as usize;
+                if let Some(at) = json[from..].iter().position(u8::is_ascii_digit) {
+                    json[from + at] = b'0' + digit;
+                }
+            }
+            String::from_utf8(json).unwrap()
+        });
+        let _ = Head::read(&bytes);
+    }
+}
