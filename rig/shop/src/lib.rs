@@ -2,6 +2,7 @@
 #![forbid(unsafe_code)]
 
 pub mod closest;
+pub mod colour;
 pub mod fit;
 pub mod hair;
 pub mod mesh;
