@@ -379,6 +379,27 @@ fn no_drawn_triangle_mixes_islands_of_the_texture() {
 }
 
 #[test]
+fn values_spread_between_neighbours_wherever_edges_are_split() {
+    let rest = &head().skin.mesh.positions;
+    let detail = Detail {
+        levels: 2,
+        bow_mm: 0.1,
+        rest,
+        hidden: &[],
+    };
+    let drawn = head().subdivision(&detail).unwrap();
+    let heights: Vec<f32> = rest.iter().map(|p| p.y).collect();
+    let spread = drawn.spread(&heights);
+    assert_eq!(spread.len(), drawn.point_count());
+    assert_eq!(spread[..heights.len()], heights);
+    let mut points = vec![Vec3::ZERO; drawn.point_count()];
+    drawn.apply(rest, &mut points);
+    for (height, point) in spread.iter().zip(&points) {
+        assert!((height - point.y).abs() < 5.0, "{height} at {point}");
+    }
+}
+
+#[test]
 fn a_mesh_that_does_not_fit_together_is_refused() {
     let (_, triangles) = patch();
     let far = [[0, SIDE * SIDE]];

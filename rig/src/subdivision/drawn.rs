@@ -21,6 +21,8 @@ type Row = Vec<(u32, f64)>;
 struct Drawn {
     /// Point and texture coordinates of each corner that differs from all others.
     corners: Vec<(u32, Vec2)>,
+    /// The ends of each split edge, by its middle.
+    ends: HashMap<u32, [u32; 2]>,
     triangles: Vec<[u32; 3]>,
 }
 
@@ -113,13 +115,14 @@ impl Drawn {
     /// Splits the edges that have a middle; `limits` choose the shorter way across what is left.
     fn split(&mut self, middles: &HashMap<[u32; 2], u32>, limits: Option<&[Vec3]>) {
         let mut made: HashMap<[u32; 2], u32> = HashMap::new();
-        let corners = &mut self.corners;
+        let (corners, all_ends) = (&mut self.corners, &mut self.ends);
         let mut finer = Vec::with_capacity(4 * self.triangles.len());
         for &t in &self.triangles {
             let middle = [0, 1, 2].map(|i| {
                 let ends = [t[i], t[(i + 1) % 3]];
                 let [a, b] = ends.map(|c| corners[c as usize]);
                 let point = *middles.get(&ordered([a.0, b.0]))?;
+                all_ends.entry(point).or_insert([a.0, b.0]);
                 Some(*made.entry(ordered(ends)).or_insert_with(|| {
                     corners.push((point, (a.1 + b.1) * 0.5));
                     corners.len() as u32 - 1
@@ -201,6 +204,11 @@ impl Drawn {
                 uvs[point as usize] = uv;
             }
         }
+        let further = (0_u32..).zip(kept).filter(|(_, kept)| **kept);
+        let parents = further
+            .filter_map(|(point, _)| self.ends.get(&point))
+            .map(|ends| ends.map(|end| number[end as usize]))
+            .collect();
         let point = |c: u32| number[self.corners[c as usize].0 as usize];
         Subdivision {
             stencils,
@@ -211,6 +219,7 @@ impl Drawn {
                 .map(|t| t.map(|c| vertex[c as usize]))
                 .collect(),
             copies,
+            parents,
             uvs,
         }
     }

@@ -120,6 +120,8 @@ pub struct Subdivision {
     welded: Vec<[u32; 3]>,
     triangles: Vec<[u32; 3]>,
     copies: Vec<u32>,
+    /// The points that each further point than the control mesh's lies between.
+    parents: Vec<[u32; 2]>,
     uvs: Vec<Vec2>,
 }
 
@@ -175,6 +177,17 @@ impl Subdivision {
     /// nothing.
     pub fn apply(&self, control: &[Vec3], out: &mut [Vec3]) {
         self.stencils.apply(control, out);
+    }
+
+    /// What each point has of a value of the control vertices: in between, and no more blurred than on
+    /// the control mesh (the dark of a nostril stays inside it).
+    #[must_use]
+    pub fn spread(&self, values: &[f32]) -> Vec<f32> {
+        let mut all = values.to_vec();
+        for [a, b] in &self.parents {
+            all.push(0.5 * (all[*a as usize] + all[*b as usize]));
+        }
+        all
     }
 
     /// Normals of the points, not yet of unit length, weighted by triangle area; the same on both sides

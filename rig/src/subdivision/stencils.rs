@@ -66,14 +66,6 @@ impl Stencils {
             *out = sum.into();
         }
     }
-
-    /// Sums each row over numbers.
-    #[must_use]
-    pub fn apply_scalar(&self, from: &[f32]) -> Vec<f32> {
-        (0..self.len())
-            .map(|row| self.row(row).map(|(i, w)| from[i as usize] * w).sum())
-            .collect()
-    }
 }
 
 /// Adds up sums of sums, in order of first appearance.
