@@ -33,6 +33,18 @@ pub(crate) fn mirror(p: DVec3) -> DVec3 {
     p * dvec3(-1.0, 1.0, 1.0)
 }
 
+/// Whether points lie on one line, and say nothing of how a head is turned about it.
+pub(crate) fn on_a_line(points: &[DVec3]) -> bool {
+    let [first, second, _] = widths(points);
+    second < LINE * first
+}
+
+/// Pairs of landmarks whose sides were exchanged, and the error that is left once they are put right.
+pub(crate) struct Exchanged {
+    names: Vec<String>,
+    left: f64,
+}
+
 impl Pairs<'_> {
     pub(crate) fn fit(&self) -> Similarity {
         Similarity::fit(&self.reference, &self.points)
@@ -45,17 +57,6 @@ impl Pairs<'_> {
 
     fn mirrored(&self) -> Vec<DVec3> {
         self.reference.iter().map(|&p| mirror(p)).collect()
-    }
-
-    pub(crate) fn not_on_a_line(&self) -> Result<(), LandmarkFault> {
-        let line = |points: &[DVec3]| {
-            let [first, second, _] = widths(points);
-            second < LINE * first
-        };
-        if line(&self.points) || line(&self.reference) {
-            return Err(LandmarkFault::Collinear);
-        }
-        Ok(())
     }
 
     pub(crate) fn apart(&self, ratio: f64) -> Result<(), LandmarkFault> {
@@ -73,26 +74,29 @@ impl Pairs<'_> {
         Ok(())
     }
 
-    /// Whether the mirrored reference explains the landmarks and the reference itself does not.
-    pub(crate) fn is_mirrored(&self, ratio: f64) -> bool {
+    /// Whether the mirrored reference explains the landmarks, the reference itself does not, and the
+    /// exchange of some pairs does not do better.
+    pub(crate) fn is_mirrored(&self, ratio: f64, exchanged: Option<&Exchanged>) -> bool {
         let straight = self.fit().rms(&self.reference, &self.points);
         let mirrored = self.mirrored();
         let turned = Similarity::fit(&mirrored, &self.points).rms(&mirrored, &self.points);
-        straight > ORDINARY * ratio && turned < EXPLAINED * straight
+        straight > ORDINARY * ratio
+            && turned < EXPLAINED * straight
+            && exchanged.is_none_or(|e| turned < 1.05 * e.left + 0.1 * ratio)
     }
 
-    /// Pairs whose sides are exchanged while the rest is right: the exchanges that help most, one by one.
-    pub(crate) fn swapped_pairs(&self, ratio: f64) -> Result<(), LandmarkFault> {
+    /// Pairs whose exchange explains the landmarks: those that help most, one by one.
+    pub(crate) fn exchanged(&self, ratio: f64) -> Option<Exchanged> {
         let mut points = self.points.clone();
         let error = |points: &[DVec3]| {
             Similarity::fit(&self.reference, points).rms(&self.reference, points)
         };
         let before = error(&points);
-        let mut now = before;
+        let mut left = before;
         let mut pairs = self.sides();
-        let mut found = Vec::new();
-        while now > ORDINARY * ratio && !pairs.is_empty() {
-            let mut best = (0, now);
+        let mut names = Vec::new();
+        while left > ORDINARY * ratio && !pairs.is_empty() {
+            let mut best = (0, left);
             for (k, &(i, j)) in pairs.iter().enumerate() {
                 points.swap(i, j);
                 let then = error(&points);
@@ -101,18 +105,15 @@ impl Pairs<'_> {
                     best = (k, then);
                 }
             }
-            if best.1 >= now {
+            if best.1 >= left {
                 break;
             }
             let (i, j) = pairs.swap_remove(best.0);
             points.swap(i, j);
-            now = best.1;
-            found.push(format!("{} and {}", self.names[i], self.names[j]));
+            left = best.1;
+            names.push(format!("{} and {}", self.names[i], self.names[j]));
         }
-        if !found.is_empty() && now < EXPLAINED * before {
-            return Err(LandmarkFault::SwappedPairs(found.join(", ")));
-        }
-        Ok(())
+        (!names.is_empty() && left < EXPLAINED * before).then_some(Exchanged { names, left })
     }
 
     /// Places of the landmarks that come as `_l` and `_r`.
@@ -125,7 +126,7 @@ impl Pairs<'_> {
         self.names.iter().enumerate().filter_map(pair).collect()
     }
 
-    /// Whether one landmark lies where the others cannot have it.
+    /// Whether no single landmark lies where the others cannot have it.
     pub(crate) fn none_astray(&self, ratio: f64) -> Result<(), LandmarkFault> {
         let count = self.points.len();
         let all = self.fit();
@@ -135,18 +136,9 @@ impl Pairs<'_> {
         let worst = (0..count)
             .max_by(|&i, &j| off(&all, i).total_cmp(&off(&all, j)))
             .unwrap_or(0);
-        if error > NO_FACE * widths(&self.points)[0].max(ORDINARY) {
-            return Err(LandmarkFault::NoFace {
-                name: self.names[worst].to_owned(),
-                distance: off(&all, worst),
-            });
-        }
-        if count < 5 {
-            // Three say nothing of a fourth.
-            return Ok(());
-        }
         let mut found: Option<(usize, f64, f64)> = None;
-        for i in 0..count {
+        // Four leave three, which say nothing of the fourth.
+        for i in (0..count).filter(|_| count > 4) {
             let without = |points: &[DVec3]| {
                 let mut rest = points.to_vec();
                 rest.remove(i);
@@ -167,12 +159,24 @@ impl Pairs<'_> {
                 found = Some((i, rest, distance));
             }
         }
-        match found {
-            Some((i, _, distance)) => Err(LandmarkFault::Disagrees {
+        if let Some((i, _, distance)) = found {
+            return Err(LandmarkFault::Disagrees {
                 name: self.names[i].to_owned(),
                 distance,
-            }),
-            None => Ok(()),
+            });
         }
+        if error > NO_FACE * widths(&self.points)[0].max(ORDINARY) {
+            return Err(LandmarkFault::NoFace {
+                name: self.names[worst].to_owned(),
+                distance: off(&all, worst),
+            });
+        }
+        Ok(())
+    }
+}
+
+impl Exchanged {
+    pub(crate) fn fault(&self) -> LandmarkFault {
+        LandmarkFault::SwappedPairs(self.names.join(", "))
     }
 }

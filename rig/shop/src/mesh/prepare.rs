@@ -139,21 +139,24 @@ pub fn prepare(
         reference: there,
         points: measured.points.iter().map(|&p| p * mm).collect(),
     };
-    pairs.not_on_a_line().map_err(fault)?;
     let normals: Vec<DVec3> = known
         .iter()
         .map(|k| reference[k.0].normal.as_dvec3())
         .collect();
     let similarity = pairs.fit();
     let mut inside_out = false;
-    match hand(&scan, &pairs, &normals, &measured, &similarity) {
+    let exchanged = pairs.exchanged(measured.ratio);
+    let mirrored = pairs.is_mirrored(measured.ratio, exchanged.as_ref());
+    if let Some(exchanged) = exchanged.filter(|_| !mirrored) {
+        return Err(fault(exchanged.fault()));
+    }
+    match hand(&scan, &pairs, &normals, &measured, mirrored) {
         Hand::Right => {}
         Hand::InsideOut => inside_out = true,
         Hand::Swapped => return Err(fault(LandmarkFault::Swapped)),
         Hand::Mirrored => return Err(scan_fault(Fault::Mirrored)),
     }
     pairs.apart(measured.ratio).map_err(fault)?;
-    pairs.swapped_pairs(measured.ratio).map_err(fault)?;
     pairs.none_astray(measured.ratio).map_err(fault)?;
     let mut notes: Vec<String> = measured.note.iter().cloned().collect();
     if inside_out {
@@ -211,7 +214,7 @@ fn hand(
     pairs: &Pairs<'_>,
     normals: &[DVec3],
     measured: &Measured,
-    similarity: &Similarity,
+    is_mirrored: bool,
 ) -> Hand {
     let radius = AROUND * measured.ratio / measured.mm_per_unit;
     let about = |turn: &dyn Fn(DVec3) -> DVec3| -> Lie {
@@ -222,10 +225,11 @@ fn hand(
         let spots: Vec<Spot> = measured.points.iter().zip(normals).map(spot).collect();
         lie(scan, &spots, radius)
     };
+    let similarity = pairs.fit();
     let straight = about(&|normal| similarity.rotation * normal);
     let mirrored = pairs.fit_mirrored();
     let turned = about(&|normal| mirrored.rotation * mirror(normal));
-    if pairs.is_mirrored(measured.ratio) {
+    if is_mirrored {
         return if turned.facing < 0.0 {
             Hand::Mirrored
         } else {

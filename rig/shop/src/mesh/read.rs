@@ -39,7 +39,8 @@ impl Side for Path {
         let relative = Path::new(&relative);
         let inside = |c: Component<'_>| matches!(c, Component::Normal(_) | Component::CurDir);
         // Exporters write paths of their own machine: then the bare name is looked for.
-        let relative = if relative.components().all(inside) {
+        let drive = name.as_bytes().get(1) == Some(&b':');
+        let relative = if relative.components().all(inside) && !drive {
             relative
         } else {
             Path::new(relative.file_name()?)

@@ -4,6 +4,7 @@
 
 use glam::DVec3;
 
+use super::check::on_a_line;
 use super::nearest::Nearest;
 use super::scan::Scan;
 use super::tidy::diagonal;
@@ -82,6 +83,9 @@ pub(crate) fn measure(
     let points: Vec<DVec3> = points.iter().map(|&p| p * factor).collect();
     if span(&points) < SPOT * size {
         return Err(LandmarkFault::OneSpot);
+    }
+    if on_a_line(&points) || on_a_line(reference) {
+        return Err(LandmarkFault::Collinear);
     }
     let raw = ratio(reference, &points);
     let (mm_per_unit, note) = choose(raw, unit, factor, given)?;

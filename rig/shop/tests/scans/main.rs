@@ -1,0 +1,10 @@
+//! Reading scans from outside: every format's round trip, hostile bytes, and what a user does wrong.
+
+mod bad_files;
+mod colours;
+mod formats;
+mod hostile;
+mod landmark_files;
+mod preparing;
+mod shapes;
+mod writers;
