@@ -5,6 +5,7 @@ pub mod closest;
 pub mod colour;
 pub mod fit;
 pub mod hair;
+pub mod landmarks;
 pub mod mesh;
 pub mod warp;
 
