@@ -33,7 +33,9 @@ pub enum SurfaceError {
     #[error("vertex {0} has a coordinate that is not finite: repair the file")]
     NotFinite(usize),
     /// A triangle refers to a vertex that is not there.
-    #[error("triangle {0} refers to a vertex that the mesh does not have: the file is cut off or damaged")]
+    #[error(
+        "triangle {0} refers to a vertex that the mesh does not have: the file is cut off or damaged"
+    )]
     Index(usize),
 }
 
@@ -61,7 +63,10 @@ pub struct Facing {
 
 impl Facing {
     /// Everything.
-    pub const ANY: Self = Self { direction: Vec3::ZERO, cosine: -1.0 };
+    pub const ANY: Self = Self {
+        direction: Vec3::ZERO,
+        cosine: -1.0,
+    };
 }
 
 /// A triangle mesh ready for queries.
@@ -86,13 +91,23 @@ impl Surface {
             return Err(SurfaceError::NotFinite(bad));
         }
         let count = positions.len();
-        if let Some(bad) = triangles.iter().position(|t| t.iter().any(|&v| v as usize >= count)) {
+        if let Some(bad) = triangles
+            .iter()
+            .position(|t| t.iter().any(|&v| v as usize >= count))
+        {
             return Err(SurfaceError::Index(bad));
         }
         let corner = |v: u32| Vec3A::from(positions[v as usize]);
-        let (mut solid, mut kept) = (Vec::with_capacity(triangles.len()), Vec::with_capacity(triangles.len()));
+        let (mut solid, mut kept) = (
+            Vec::with_capacity(triangles.len()),
+            Vec::with_capacity(triangles.len()),
+        );
         for (id, &[a, b, c]) in triangles.iter().enumerate() {
-            let triangle = Triangle { v0: corner(a), v1: corner(b), v2: corner(c) };
+            let triangle = Triangle {
+                v0: corner(a),
+                v1: corner(b),
+                v2: corner(c),
+            };
             if triangle.compute_normal() != Vec3A::ZERO {
                 solid.push(triangle);
                 kept.push(id as u32);
@@ -101,7 +116,11 @@ impl Surface {
         if solid.is_empty() {
             return Err(SurfaceError::Empty);
         }
-        let bvh = build_bvh2_from_tris(&solid, BvhBuildParams::fast_build(), &mut Duration::default());
+        let bvh = build_bvh2_from_tris(
+            &solid,
+            BvhBuildParams::fast_build(),
+            &mut Duration::default(),
+        );
         let order = &bvh.primitive_indices;
         let leaves: Vec<Triangle> = order.iter().map(|&i| solid[i as usize]).collect();
         let ids = order.iter().map(|&i| kept[i as usize]).collect();
@@ -121,9 +140,21 @@ impl Surface {
             on_border[e.vertices[1] as usize] = true;
             border_edges.insert(e.vertices);
         }
-        let borders = joined.iter().map(|t| border_bits(*t, &on_border, &border_edges)).collect();
+        let borders = joined
+            .iter()
+            .map(|t| border_bits(*t, &on_border, &border_edges))
+            .collect();
         let normals = smooth_normals(positions, joined);
-        Ok(Self { positions: positions.to_vec(), triangles: joined.to_vec(), bvh, leaves, leaf_normals, ids, normals, borders })
+        Ok(Self {
+            positions: positions.to_vec(),
+            triangles: joined.to_vec(),
+            bvh,
+            leaves,
+            leaf_normals,
+            ids,
+            normals,
+            borders,
+        })
     }
 
     /// The vertices as they were given.
@@ -163,7 +194,11 @@ impl Surface {
                 let (l, r) = (node.first_index, node.first_index + 1);
                 let dl = box_distance(self.bvh.nodes[l as usize].aabb(), query);
                 let dr = box_distance(self.bvh.nodes[r as usize].aabb(), query);
-                let (near, far) = if dl <= dr { ((dl, l), (dr, r)) } else { ((dr, r), (dl, l)) };
+                let (near, far) = if dl <= dr {
+                    ((dl, l), (dr, r))
+                } else {
+                    ((dr, r), (dl, l))
+                };
                 stack.extend((far.0 <= limit).then_some(far));
                 stack.extend((near.0 <= limit).then_some(near));
                 continue;
@@ -224,7 +259,12 @@ impl Surface {
 
     fn hit(&self, leaf: usize, shares: Vec3A, from: Vec3) -> Hit {
         let point = Vec3::from(mix(&self.leaves[leaf], shares));
-        Hit { point, triangle: self.ids[leaf], barycentric: shares.to_array(), distance: point.distance(from) }
+        Hit {
+            point,
+            triangle: self.ids[leaf],
+            barycentric: shares.to_array(),
+            distance: point.distance(from),
+        }
     }
 }
 
@@ -246,7 +286,9 @@ pub(crate) fn smooth_normals(positions: &[Vec3], triangles: &[[u32; 3]]) -> Vec<
             mean[v as usize] += sum;
         }
     }
-    mean.into_iter().map(|n| n.normalize_or_zero().into()).collect()
+    mean.into_iter()
+        .map(|n| n.normalize_or_zero().into())
+        .collect()
 }
 
 fn border_bits(t: [u32; 3], on_border: &[bool], edges: &std::collections::HashSet<[u32; 2]>) -> u8 {
@@ -265,9 +307,15 @@ fn weld(positions: &[Vec3], triangles: &[[u32; 3]]) -> Vec<[u32; 3]> {
     let mut first = HashMap::with_capacity(positions.len() / 4);
     // Adding zero makes one of the two zeros.
     let key = |p: Vec3| (p + Vec3::ZERO).to_array().map(f32::to_bits);
-    let joined: Vec<u32> =
-        positions.iter().enumerate().map(|(i, &p)| *first.entry(key(p)).or_insert(i as u32)).collect();
-    triangles.iter().map(|t| t.map(|v| joined[v as usize])).collect()
+    let joined: Vec<u32> = positions
+        .iter()
+        .enumerate()
+        .map(|(i, &p)| *first.entry(key(p)).or_insert(i as u32))
+        .collect();
+    triangles
+        .iter()
+        .map(|t| t.map(|v| joined[v as usize]))
+        .collect()
 }
 
 fn box_distance(aabb: &Aabb, p: Vec3A) -> f32 {

@@ -101,9 +101,8 @@ impl Warp {
             }
         }
         let x = a.partial_piv_lu().solve(&b);
-        let row = |i: usize, scale: f64| {
-            (DVec3::new(x[(i, 0)], x[(i, 1)], x[(i, 2)]) * scale).as_vec3()
-        };
+        let row =
+            |i: usize, scale: f64| (DVec3::new(x[(i, 0)], x[(i, 1)], x[(i, 2)]) * scale).as_vec3();
         let centres: Vec<[f32; 6]> = (0..n)
             .map(|i| {
                 let (p, c) = (local[i].as_vec3(), row(i, 1.0 / spread));
@@ -111,12 +110,22 @@ impl Warp {
             })
             .collect();
         let origin = (middle + row(n + 3, 1.0).as_dvec3()).as_vec3();
-        let affine = [row(n, 1.0 / spread), row(n + 1, 1.0 / spread), row(n + 2, 1.0 / spread), origin];
-        let finite = centres.iter().flatten().all(|v| v.is_finite()) && affine.iter().all(|v| v.is_finite());
+        let affine = [
+            row(n, 1.0 / spread),
+            row(n + 1, 1.0 / spread),
+            row(n + 2, 1.0 / spread),
+            origin,
+        ];
+        let finite =
+            centres.iter().flatten().all(|v| v.is_finite()) && affine.iter().all(|v| v.is_finite());
         if !finite {
             return Err(WarpError::Singular);
         }
-        Ok(Self { middle: middle.as_vec3(), centres, affine })
+        Ok(Self {
+            middle: middle.as_vec3(),
+            centres,
+            affine,
+        })
     }
 
     /// Where the warp takes each of `points`; both slices have one length, the shorter one counts.
@@ -168,12 +177,19 @@ impl Warp {
 
 fn check(from: &[Vec3], to: &[Vec3]) -> Result<(), WarpError> {
     if from.len() != to.len() {
-        return Err(WarpError::Lengths { sources: from.len(), targets: to.len() });
+        return Err(WarpError::Lengths {
+            sources: from.len(),
+            targets: to.len(),
+        });
     }
     if from.len() < 4 {
         return Err(WarpError::TooFew(from.len()));
     }
-    match from.iter().zip(to).position(|(p, q)| !p.is_finite() || !q.is_finite()) {
+    match from
+        .iter()
+        .zip(to)
+        .position(|(p, q)| !p.is_finite() || !q.is_finite())
+    {
         Some(bad) => Err(WarpError::NotFinite(bad)),
         None => Ok(()),
     }
@@ -185,7 +201,10 @@ fn distinct(points: &[DVec3], spread: f64) -> Result<(), WarpError> {
     let mut order: Vec<usize> = (0..points.len()).collect();
     order.sort_by(|&a, &b| points[a].x.total_cmp(&points[b].x));
     for (k, &i) in order.iter().enumerate() {
-        for &j in order[k + 1..].iter().take_while(|&&j| points[j].x - points[i].x <= near) {
+        for &j in order[k + 1..]
+            .iter()
+            .take_while(|&&j| points[j].x - points[i].x <= near)
+        {
             if points[i].distance(points[j]) <= near {
                 return Err(WarpError::Coincident(i.min(j), i.max(j)));
             }
@@ -212,7 +231,11 @@ mod tests {
         (0..n)
             .map(|i| {
                 let t = i as f32 + seed;
-                Vec3::new((t * 1.7).sin() * 80.0, (t * 2.9).sin() * 110.0, (t * 4.3).cos() * 95.0)
+                Vec3::new(
+                    (t * 1.7).sin() * 80.0,
+                    (t * 2.9).sin() * 110.0,
+                    (t * 4.3).cos() * 95.0,
+                )
             })
             .collect()
     }
@@ -220,7 +243,11 @@ mod tests {
     #[test]
     fn it_takes_every_source_to_its_target() {
         let from = cloud(300, 0.0);
-        let to: Vec<Vec3> = from.iter().zip(cloud(300, 9.0)).map(|(p, q)| *p * 1.1 + q * 0.05).collect();
+        let to: Vec<Vec3> = from
+            .iter()
+            .zip(cloud(300, 9.0))
+            .map(|(p, q)| *p * 1.1 + q * 0.05)
+            .collect();
         let warp = Warp::new(&from, &to).unwrap();
         let mut out = vec![Vec3::ZERO; from.len()];
         warp.apply(&from, &mut out);
@@ -232,7 +259,11 @@ mod tests {
     #[test]
     fn an_affine_map_of_the_points_is_the_same_map_of_all_space() {
         let map = glam::Affine3A::from_mat3_translation(
-            glam::Mat3::from_cols(Vec3::new(0.9, 0.1, 0.0), Vec3::new(-0.2, 1.2, 0.1), Vec3::new(0.0, 0.3, 0.8)),
+            glam::Mat3::from_cols(
+                Vec3::new(0.9, 0.1, 0.0),
+                Vec3::new(-0.2, 1.2, 0.1),
+                Vec3::new(0.0, 0.3, 0.8),
+            ),
             Vec3::new(10.0, -500.0, 3.0),
         );
         let from = cloud(40, 0.0);
@@ -247,8 +278,14 @@ mod tests {
         let from = cloud(60, 0.0);
         let mut to = from.clone();
         to[7] += Vec3::new(0.0, 8.0, 0.0);
-        let exact = Warp::new(&from, &to).unwrap().point(from[7]).distance(to[7]);
-        let soft = Warp::smoothed(&from, &to, &[40.0; 60]).unwrap().point(from[7]).distance(to[7]);
+        let exact = Warp::new(&from, &to)
+            .unwrap()
+            .point(from[7])
+            .distance(to[7]);
+        let soft = Warp::smoothed(&from, &to, &[40.0; 60])
+            .unwrap()
+            .point(from[7])
+            .distance(to[7]);
         assert!(exact < 1e-3);
         assert!(soft > 1.0 && soft < 8.0, "{soft}");
     }
@@ -256,17 +293,32 @@ mod tests {
     #[test]
     fn what_defines_no_warp_is_refused_with_the_reason() {
         let from = cloud(6, 0.0);
-        assert_eq!(Warp::new(&from[..3], &from[..3]).unwrap_err(), WarpError::TooFew(3));
-        assert_eq!(Warp::new(&from, &from[..4]).unwrap_err(), WarpError::Lengths { sources: 6, targets: 4 });
+        assert_eq!(
+            Warp::new(&from[..3], &from[..3]).unwrap_err(),
+            WarpError::TooFew(3)
+        );
+        assert_eq!(
+            Warp::new(&from, &from[..4]).unwrap_err(),
+            WarpError::Lengths {
+                sources: 6,
+                targets: 4
+            }
+        );
         let mut twice = from.clone();
         twice[4] = twice[1];
-        assert_eq!(Warp::new(&twice, &from).unwrap_err(), WarpError::Coincident(1, 4));
+        assert_eq!(
+            Warp::new(&twice, &from).unwrap_err(),
+            WarpError::Coincident(1, 4)
+        );
         let plane: Vec<Vec3> = from.iter().map(|p| Vec3::new(p.x, p.y, 0.0)).collect();
         assert_eq!(Warp::new(&plane, &from).unwrap_err(), WarpError::Flat);
         let mut nan = from.clone();
         nan[2].y = f32::NAN;
         assert_eq!(Warp::new(&from, &nan).unwrap_err(), WarpError::NotFinite(2));
-        assert_eq!(Warp::new(&[Vec3::ONE; 5], &from[..5]).unwrap_err(), WarpError::Coincident(0, 1));
+        assert_eq!(
+            Warp::new(&[Vec3::ONE; 5], &from[..5]).unwrap_err(),
+            WarpError::Coincident(0, 1)
+        );
     }
 
     proptest! {

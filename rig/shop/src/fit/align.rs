@@ -45,8 +45,18 @@ impl Similarity {
         // s(i, j): sum of source coordinate i times target coordinate j.
         let s = |i: usize, j: usize| cross.col(i)[j];
         let horn = [
-            [s(0, 0) + s(1, 1) + s(2, 2), s(1, 2) - s(2, 1), s(2, 0) - s(0, 2), s(0, 1) - s(1, 0)],
-            [0.0, s(0, 0) - s(1, 1) - s(2, 2), s(0, 1) + s(1, 0), s(2, 0) + s(0, 2)],
+            [
+                s(0, 0) + s(1, 1) + s(2, 2),
+                s(1, 2) - s(2, 1),
+                s(2, 0) - s(0, 2),
+                s(0, 1) - s(1, 0),
+            ],
+            [
+                0.0,
+                s(0, 0) - s(1, 1) - s(2, 2),
+                s(0, 1) + s(1, 0),
+                s(2, 0) + s(0, 2),
+            ],
             [0.0, 0.0, s(1, 1) - s(0, 0) - s(2, 2), s(1, 2) + s(2, 1)],
             [0.0, 0.0, 0.0, s(2, 2) - s(0, 0) - s(1, 1)],
         ];
@@ -77,12 +87,21 @@ impl Similarity {
     pub fn inverse(&self) -> Self {
         let rotation = self.rotation.conjugate();
         let scale = 1.0 / self.scale;
-        Self { scale, rotation, translation: -(rotation * self.translation * scale), mirrored: self.mirrored }
+        Self {
+            scale,
+            rotation,
+            translation: -(rotation * self.translation * scale),
+            mirrored: self.mirrored,
+        }
     }
 
     /// As a matrix on column vectors.
     pub fn matrix(&self) -> Mat4 {
-        Mat4::from_scale_rotation_translation(Vec3::splat(self.scale), self.rotation, self.translation)
+        Mat4::from_scale_rotation_translation(
+            Vec3::splat(self.scale),
+            self.rotation,
+            self.translation,
+        )
     }
 }
 
@@ -91,9 +110,16 @@ mod tests {
     use super::*;
 
     fn points() -> Vec<Vec3> {
-        [[0.0, 0.0, 90.0], [20.0, 30.0, 70.0], [-20.0, 30.0, 70.0], [25.0, -35.0, 75.0], [-25.0, -35.0, 75.0], [0.0, 120.0, 0.0]]
-            .map(Vec3::from)
-            .to_vec()
+        [
+            [0.0, 0.0, 90.0],
+            [20.0, 30.0, 70.0],
+            [-20.0, 30.0, 70.0],
+            [25.0, -35.0, 75.0],
+            [-25.0, -35.0, 75.0],
+            [0.0, 120.0, 0.0],
+        ]
+        .map(Vec3::from)
+        .to_vec()
     }
 
     #[test]

@@ -47,7 +47,10 @@ pub struct Estimate {
 
 /// Places every landmark, given at least four that do not lie in one plane or three others and a similarity.
 pub fn estimate(sources: &[Source], scan: &Surface) -> Result<Vec<Estimate>, WarpError> {
-    let known: Vec<(Vec3, Vec3)> = sources.iter().filter_map(|s| s.known.map(|to| (s.at, to))).collect();
+    let known: Vec<(Vec3, Vec3)> = sources
+        .iter()
+        .filter_map(|s| s.known.map(|to| (s.at, to)))
+        .collect();
     if known.len() < 4 {
         return Err(WarpError::TooFew(known.len()));
     }
@@ -55,7 +58,9 @@ pub fn estimate(sources: &[Source], scan: &Surface) -> Result<Vec<Estimate>, War
     let similarity = Similarity::between(&from, &to).ok_or(WarpError::Coincident(0, 1))?;
     let (low, high) = sources
         .iter()
-        .fold((Vec3::INFINITY, Vec3::NEG_INFINITY), |(low, high), s| (low.min(s.at), high.max(s.at)));
+        .fold((Vec3::INFINITY, Vec3::NEG_INFINITY), |(low, high), s| {
+            (low.min(s.at), high.max(s.at))
+        });
     let (middle, half) = ((low + high) / 2.0, (high - low) / 2.0);
     let mut give = vec![0.0; from.len()];
     for corner in 0..8_u32 {
@@ -72,8 +77,17 @@ pub fn estimate(sources: &[Source], scan: &Surface) -> Result<Vec<Estimate>, War
     Ok(sources
         .iter()
         .map(|source| match source.known {
-            Some(at) => Estimate { at, estimated: false, on_scan: true },
-            None => settle(warp.point(source.at), similarity.rotation * source.normal, scan, near),
+            Some(at) => Estimate {
+                at,
+                estimated: false,
+                on_scan: true,
+            },
+            None => settle(
+                warp.point(source.at),
+                similarity.rotation * source.normal,
+                scan,
+                near,
+            ),
         })
         .collect())
 }
@@ -81,10 +95,27 @@ pub fn estimate(sources: &[Source], scan: &Surface) -> Result<Vec<Estimate>, War
 fn settle(at: Vec3, normal: Vec3, scan: &Surface, near: f32) -> Estimate {
     let found = [1.0, -1.0]
         .into_iter()
-        .filter_map(|sense| scan.closest_facing(at, near, Facing { direction: normal * sense, cosine: AGREE }))
+        .filter_map(|sense| {
+            scan.closest_facing(
+                at,
+                near,
+                Facing {
+                    direction: normal * sense,
+                    cosine: AGREE,
+                },
+            )
+        })
         .find(|hit| !scan.on_border(hit));
     match found {
-        Some(hit) => Estimate { at: hit.point, estimated: true, on_scan: true },
-        None => Estimate { at, estimated: true, on_scan: false },
+        Some(hit) => Estimate {
+            at: hit.point,
+            estimated: true,
+            on_scan: true,
+        },
+        None => Estimate {
+            at,
+            estimated: true,
+            on_scan: false,
+        },
     }
 }

@@ -41,11 +41,17 @@ impl FeatureMesh {
         let spread = points.iter().map(|p| p.distance(mean)).sum::<f32>() / n;
         // Landmarks all round a head have normals that cancel; those of a face alone point forward.
         let middle = mean - normals.iter().sum::<Vec3>() / n * spread;
-        let directions: Vec<Vec3> =
-            points.iter().map(|p| (*p - middle).try_normalize().unwrap_or(Vec3::Y)).collect();
+        let directions: Vec<Vec3> = points
+            .iter()
+            .map(|p| (*p - middle).try_normalize().unwrap_or(Vec3::Y))
+            .collect();
         let up = -loneliest(&directions);
         let (u, v) = up.any_orthonormal_pair();
-        let (u, v) = if u.cross(v).dot(up) > 0.0 { (u, v) } else { (v, u) };
+        let (u, v) = if u.cross(v).dot(up) > 0.0 {
+            (u, v)
+        } else {
+            (v, u)
+        };
         let mut plane = DelaunayTriangulation::<Point2<f64>>::new();
         let mut names = Vec::with_capacity(points.len());
         for (i, d) in directions.iter().enumerate() {
@@ -76,7 +82,8 @@ impl FeatureMesh {
             })
             .collect();
         let across = self.sides();
-        let neighbour = |a: u32, b: u32| across.get(&[b, a]).map_or(Vec3::ZERO, |&t| raw[t as usize]);
+        let neighbour =
+            |a: u32, b: u32| across.get(&[b, a]).map_or(Vec3::ZERO, |&t| raw[t as usize]);
         self.triangles
             .iter()
             .zip(&raw)
@@ -124,7 +131,9 @@ impl FeatureMesh {
         self.triangles
             .iter()
             .enumerate()
-            .flat_map(|(t, &[a, b, c])| [([a, b], t as u32), ([b, c], t as u32), ([c, a], t as u32)])
+            .flat_map(|(t, &[a, b, c])| {
+                [([a, b], t as u32), ([b, c], t as u32), ([c, a], t as u32)]
+            })
             .collect()
     }
 }

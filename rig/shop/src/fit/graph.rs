@@ -11,7 +11,11 @@ pub struct Edge {
 
 /// Every edge once. Sorted by counting, as scans have hundreds of thousands.
 pub fn shared_edges(vertices: usize, triangles: &[[u32; 3]]) -> Vec<Edge> {
-    let sides = || triangles.iter().flat_map(|&[a, b, c]| [[a, b], [b, c], [c, a]]);
+    let sides = || {
+        triangles
+            .iter()
+            .flat_map(|&[a, b, c]| [[a, b], [b, c], [c, a]])
+    };
     let mut start = vec![0_u32; vertices + 1];
     for [a, b] in sides() {
         start[a.min(b) as usize + 1] += 1;
@@ -32,7 +36,10 @@ pub fn shared_edges(vertices: usize, triangles: &[[u32; 3]]) -> Vec<Edge> {
         ends.sort_unstable();
         for group in ends.chunk_by(|a, b| a == b) {
             if group[0] != v as u32 {
-                edges.push(Edge { vertices: [v as u32, group[0]], uses: group.len() as u32 });
+                edges.push(Edge {
+                    vertices: [v as u32, group[0]],
+                    uses: group.len() as u32,
+                });
             }
         }
     }

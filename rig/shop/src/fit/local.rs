@@ -63,30 +63,50 @@ struct Plane {
 impl<'a> Local<'a> {
     pub(crate) fn new(template: &'a Template<'a>, landmarks: Vec<(Place, Vec3)>) -> Self {
         let count = template.positions.len();
-        let mesh: Vec<[u32; 2]> =
-            shared_edges(count, template.triangles).into_iter().map(|e| e.vertices).collect();
+        let mesh: Vec<[u32; 2]> = shared_edges(count, template.triangles)
+            .into_iter()
+            .map(|e| e.vertices)
+            .collect();
         let near = Rings::new(count, mesh.iter().copied());
         let tied = ties(template, &near);
         let rings = Rings::new(count, mesh.iter().chain(&tied).copied());
         let mut shares = Vec::new();
         for v in 0..count {
             let at = template.positions[v];
-            let weights = rings.of(v).iter().map(|&n| 1.0 / at.distance(template.positions[n as usize]).max(0.3));
+            let weights = rings
+                .of(v)
+                .iter()
+                .map(|&n| 1.0 / at.distance(template.positions[n as usize]).max(0.3));
             let sum: f32 = weights.clone().sum();
             shares.extend(weights.map(|w| w / sum));
         }
-        let landmarks = landmarks.into_iter().map(|(place, to)| (place, to.into())).collect();
-        Self { template, rings, shares, landmarks, stiff: vec![1.0; count] }
+        let landmarks = landmarks
+            .into_iter()
+            .map(|(place, to)| (place, to.into()))
+            .collect();
+        Self {
+            template,
+            rings,
+            shares,
+            landmarks,
+            stiff: vec![1.0; count],
+        }
     }
 
     /// Moves `positions` (the warped template) onto the target, round by round.
-    pub(crate) fn run(&mut self, positions: &[Vec3], target: &Target, options: &Options) -> Vec<Vec3A> {
+    pub(crate) fn run(
+        &mut self,
+        positions: &[Vec3],
+        target: &Target,
+        options: &Options,
+    ) -> Vec<Vec3A> {
         let start: Vec<Vec3A> = positions.iter().map(|p| Vec3A::from(*p)).collect();
         let mut moved = vec![Vec3A::ZERO; start.len()];
         for round in 0..options.local_rounds {
             let share = round as f32 / (options.local_rounds.max(2) - 1) as f32;
             let reach = options.reach_mm.0 * (options.reach_mm.1 / options.reach_mm.0).powf(share);
-            let stiffness = options.stiffness.0 * (options.stiffness.1 / options.stiffness.0).powf(share);
+            let stiffness =
+                options.stiffness.0 * (options.stiffness.1 / options.stiffness.0).powf(share);
             let planes = self.look(&start, &moved, target, reach);
             self.solve(&start, &mut moved, &planes, stiffness, options.iterations);
         }
@@ -102,7 +122,12 @@ impl<'a> Local<'a> {
         target: &Target,
         options: &Options,
     ) {
-        for (stiff, _) in self.stiff.iter_mut().zip(marked).filter(|(_, marked)| **marked) {
+        for (stiff, _) in self
+            .stiff
+            .iter_mut()
+            .zip(marked)
+            .filter(|(_, marked)| **marked)
+        {
             *stiff = (*stiff * 10.0).min(1e3);
         }
         let start: Vec<Vec3A> = positions.iter().map(|p| Vec3A::from(*p)).collect();
@@ -110,7 +135,13 @@ impl<'a> Local<'a> {
         for (plane, stiff) in planes.iter_mut().zip(&self.stiff) {
             *plane = plane.filter(|_| *stiff <= 1.0);
         }
-        self.solve(&start, moved, &planes, options.stiffness.1, 2 * options.iterations);
+        self.solve(
+            &start,
+            moved,
+            &planes,
+            options.stiffness.1,
+            2 * options.iterations,
+        );
     }
 
     /// Replaces displacements of `marked` by the mean of their neighbours', a few times: the last resort.
@@ -126,8 +157,18 @@ impl<'a> Local<'a> {
         self.rings.grow(marked);
     }
 
-    fn look(&self, start: &[Vec3A], moved: &[Vec3A], target: &Target, reach: f32) -> Vec<Option<Plane>> {
-        let now: Vec<Vec3> = start.iter().zip(moved).map(|(s, d)| Vec3::from(*s + *d)).collect();
+    fn look(
+        &self,
+        start: &[Vec3A],
+        moved: &[Vec3A],
+        target: &Target,
+        reach: f32,
+    ) -> Vec<Option<Plane>> {
+        let now: Vec<Vec3> = start
+            .iter()
+            .zip(moved)
+            .map(|(s, d)| Vec3::from(*s + *d))
+            .collect();
         let normals = smooth_normals(&now, self.template.triangles);
         (0..now.len())
             .map(|v| {
@@ -135,16 +176,24 @@ impl<'a> Local<'a> {
                 if freedom <= 0.0 {
                     return None;
                 }
-                let facing = Facing { direction: normals[v], cosine: AGREE };
+                let facing = Facing {
+                    direction: normals[v],
+                    cosine: AGREE,
+                };
                 let (hit, normal) = target.closest(now[v], reach, facing)?;
                 let way = hit.point - now[v];
-                let aside = hit.distance > ASIDE_FROM_MM && way.dot(normal).abs() < ASIDE * hit.distance;
+                let aside =
+                    hit.distance > ASIDE_FROM_MM && way.dot(normal).abs() < ASIDE * hit.distance;
                 if aside || normal.dot(normals[v]) < AGREE {
                     return None;
                 }
                 // Far places count less: a smooth way to say that they may be wrong.
                 let trust = 1.0 - (hit.distance / reach).powi(2);
-                Some(Plane { point: hit.point.into(), normal: normal.into(), weight: freedom * trust * trust })
+                Some(Plane {
+                    point: hit.point.into(),
+                    normal: normal.into(),
+                    weight: freedom * trust * trust,
+                })
             })
             .collect()
     }
@@ -162,9 +211,15 @@ impl<'a> Local<'a> {
         let mut wanted = vec![Vec3A::ZERO; n];
         for (v, plane) in planes.iter().enumerate() {
             let mut block = Mat3A::from_diagonal(Vec3::splat(HOLD));
-            if let Some(Plane { point, normal, weight }) = *plane {
-                let pull = Mat3A::from_cols(normal * normal.x, normal * normal.y, normal * normal.z)
-                    + Mat3A::from_diagonal(Vec3::splat(POINT_SHARE));
+            if let Some(Plane {
+                point,
+                normal,
+                weight,
+            }) = *plane
+            {
+                let pull =
+                    Mat3A::from_cols(normal * normal.x, normal * normal.y, normal * normal.z)
+                        + Mat3A::from_diagonal(Vec3::splat(POINT_SHARE));
                 block += pull * weight;
                 wanted[v] = pull * (point - start[v]) * weight;
             }
@@ -172,7 +227,9 @@ impl<'a> Local<'a> {
         }
         for (place, to) in &self.landmarks {
             let ids = self.template.triangles[place.triangle as usize];
-            let at: Vec3A = (0..3).map(|k| start[ids[k] as usize] * place.shares[k]).sum();
+            let at: Vec3A = (0..3)
+                .map(|k| start[ids[k] as usize] * place.shares[k])
+                .sum();
             for k in 0..3 {
                 wanted[ids[k] as usize] += (*to - at) * (LANDMARK * place.shares[k]);
             }
@@ -182,7 +239,11 @@ impl<'a> Local<'a> {
         let mut image = vec![Vec3A::ZERO; n];
         self.apply(&data, stiffness, moved, &mut scratch, &mut image);
         let mut residual: Vec<Vec3A> = wanted.iter().zip(&image).map(|(w, i)| *w - *i).collect();
-        let mut better: Vec<Vec3A> = inverse.iter().zip(&residual).map(|(m, r)| *m * *r).collect();
+        let mut better: Vec<Vec3A> = inverse
+            .iter()
+            .zip(&residual)
+            .map(|(m, r)| *m * *r)
+            .collect();
         let mut direction = better.clone();
         let mut size = dot(&residual, &better);
         let enough = size * f64::from(TOLERANCE).powi(2);
@@ -207,7 +268,14 @@ impl<'a> Local<'a> {
     }
 
     /// `out` = (data + landmarks + stiffness L' S L) x.
-    fn apply(&self, data: &[Mat3A], stiffness: f32, x: &[Vec3A], bent: &mut [Vec3A], out: &mut [Vec3A]) {
+    fn apply(
+        &self,
+        data: &[Mat3A],
+        stiffness: f32,
+        x: &[Vec3A],
+        bent: &mut [Vec3A],
+        out: &mut [Vec3A],
+    ) {
         for v in 0..x.len() {
             bent[v] = (x[v] - self.mean(x, v)) * (self.stiff[v] * stiffness);
         }
@@ -248,7 +316,10 @@ impl<'a> Local<'a> {
     }
 
     fn mean(&self, x: &[Vec3A], v: usize) -> Vec3A {
-        self.rings.span(v).map(|k| x[self.rings.entry(k)] * self.shares[k]).sum()
+        self.rings
+            .span(v)
+            .map(|k| x[self.rings.entry(k)] * self.shares[k])
+            .sum()
     }
 }
 
@@ -257,19 +328,34 @@ impl<'a> Local<'a> {
 fn ties(template: &Template, near: &Rings) -> Vec<[u32; 2]> {
     let cell = |p: Vec3| (p / TIE_MM).floor().as_ivec3();
     let normals = smooth_normals(template.positions, template.triangles);
-    let mut grid: std::collections::HashMap<glam::IVec3, Vec<u32>> = std::collections::HashMap::new();
+    let mut grid: std::collections::HashMap<glam::IVec3, Vec<u32>> =
+        std::collections::HashMap::new();
     for (v, p) in template.positions.iter().enumerate() {
         grid.entry(cell(*p)).or_default().push(v as u32);
     }
     let mut found = Vec::new();
-    for (v, p) in template.positions.iter().enumerate().filter(|(v, _)| template.freedom[*v] < 1.0) {
+    for (v, p) in template
+        .positions
+        .iter()
+        .enumerate()
+        .filter(|(v, _)| template.freedom[*v] < 1.0)
+    {
         let mut best: Option<(f32, u32)> = None;
-        let around = (-1..=1).flat_map(|x| (-1..=1).flat_map(move |y| (-1..=1).map(move |z| glam::IVec3::new(x, y, z))));
-        for &other in around.filter_map(|step| grid.get(&(cell(*p) + step))).flatten() {
+        let around = (-1..=1).flat_map(|x| {
+            (-1..=1).flat_map(move |y| (-1..=1).map(move |z| glam::IVec3::new(x, y, z)))
+        });
+        for &other in around
+            .filter_map(|step| grid.get(&(cell(*p) + step)))
+            .flatten()
+        {
             let o = other as usize;
             let apart = p.distance(template.positions[o]);
             let opposite = normals[v].dot(normals[o]) < -0.2;
-            if o != v && opposite && apart < best.map_or(TIE_MM, |b| b.0) && !near.of(v).contains(&other) {
+            if o != v
+                && opposite
+                && apart < best.map_or(TIE_MM, |b| b.0)
+                && !near.of(v).contains(&other)
+            {
                 best = Some((apart, other));
             }
         }

@@ -78,7 +78,7 @@ impl Default for Options {
             give_mm: (0.5, 4.0),
             local_rounds: 6,
             reach_mm: (6.0, 2.5),
-            stiffness: (20.0, 0.5),
+            stiffness: (20.0, 2.0),
             iterations: 30,
         }
     }
@@ -102,7 +102,9 @@ pub enum FitError {
     #[error("the landmarks: {0}")]
     Landmarks(#[from] WarpError),
     /// The landmarks are a mirror image.
-    #[error("the landmarks fit better as a mirror image: swap the points of the left and the right side")]
+    #[error(
+        "the landmarks fit better as a mirror image: swap the points of the left and the right side"
+    )]
     Mirrored,
 }
 
@@ -154,7 +156,13 @@ impl Target<'_> {
     }
 
     /// First place along a ray, with the normal there; none on a border.
-    pub(crate) fn ray(&self, origin: Vec3, way: Vec3, max: f32, facing: Facing) -> Option<(Hit, Vec3)> {
+    pub(crate) fn ray(
+        &self,
+        origin: Vec3,
+        way: Vec3,
+        max: f32,
+        facing: Facing,
+    ) -> Option<(Hit, Vec3)> {
         let hit = self.surface.ray(origin, way, max, self.turn(facing))?;
         self.inner(hit)
     }
@@ -164,7 +172,10 @@ impl Target<'_> {
     }
 
     fn turn(&self, facing: Facing) -> Facing {
-        Facing { direction: facing.direction * self.sense, ..facing }
+        Facing {
+            direction: facing.direction * self.sense,
+            ..facing
+        }
     }
 }
 
@@ -179,7 +190,10 @@ pub fn fit(
     let begun = Instant::now();
     let mut seconds = Seconds::default();
     if template.positions.len() != template.freedom.len() {
-        return Err(FitError::Freedom { positions: template.positions.len(), freedom: template.freedom.len() });
+        return Err(FitError::Freedom {
+            positions: template.positions.len(),
+            freedom: template.freedom.len(),
+        });
     }
     let (from, to): (Vec<Vec3>, Vec<Vec3>) = landmarks.iter().copied().unzip();
     if align::Similarity::between(&from, &to).is_some_and(|s| s.mirrored) {
@@ -191,21 +205,47 @@ pub fn fit(
     let mut by_landmarks = vec![Vec3::ZERO; template.positions.len()];
     first.apply(template.positions, &mut by_landmarks);
     let inside_out = is_inside_out(template, &by_landmarks, scan);
-    let target = Target { surface: scan, sense: if inside_out { -1.0 } else { 1.0 } };
+    let target = Target {
+        surface: scan,
+        sense: if inside_out { -1.0 } else { 1.0 },
+    };
     seconds.warp = begun.elapsed().as_secs_f64();
 
     let should = face_normals(&by_landmarks, template.triangles);
-    let refined = refine::refine(template, &target, &rest, &places, (&from, &to), first, &should, options)?;
+    let refined = refine::refine(
+        template,
+        &target,
+        &rest,
+        &places,
+        (&from, &to),
+        first,
+        &should,
+        options,
+    )?;
     seconds.refine = begun.elapsed().as_secs_f64() - seconds.warp;
 
-    let mut local = Local::new(template, places.iter().copied().zip(to.iter().copied()).collect());
+    let mut local = Local::new(
+        template,
+        places.iter().copied().zip(to.iter().copied()).collect(),
+    );
     let mut moved = local.run(&refined.positions, &target, options);
-    let relaxed = relax(template, &mut local, &refined.positions, &mut moved, &target, &should, options);
+    let relaxed = relax(
+        template,
+        &mut local,
+        &refined.positions,
+        &mut moved,
+        &target,
+        &should,
+        options,
+    );
     let positions = displaced(&refined.positions, &moved);
     seconds.total = begun.elapsed().as_secs_f64();
     seconds.local = seconds.total - seconds.refine - seconds.warp;
     Ok(Fit {
-        landmarks: places.iter().map(|p| p.on(&positions, template.triangles)).collect(),
+        landmarks: places
+            .iter()
+            .map(|p| p.on(&positions, template.triangles))
+            .collect(),
         positions,
         by_landmarks,
         warp: refined.warp,
@@ -227,7 +267,12 @@ fn relax(
     options: &Options,
 ) -> usize {
     let marked = |moved: &[Vec3A]| {
-        let bad = turned(&displaced(start, moved), template.triangles, should, NEARLY_TURNED);
+        let bad = turned(
+            &displaced(start, moved),
+            template.triangles,
+            should,
+            NEARLY_TURNED,
+        );
         let mut set = vec![false; start.len()];
         for &face in &bad {
             for v in template.triangles[face] {
@@ -262,13 +307,20 @@ fn relax(
 }
 
 fn displaced(start: &[Vec3], moved: &[Vec3A]) -> Vec<Vec3> {
-    start.iter().zip(moved).map(|(s, d)| *s + Vec3::from(*d)).collect()
+    start
+        .iter()
+        .zip(moved)
+        .map(|(s, d)| *s + Vec3::from(*d))
+        .collect()
 }
 
 /// The place on a surface nearest to a point.
 fn place(surface: &Surface, point: Vec3) -> Option<Place> {
     let hit = surface.closest(point, f32::INFINITY)?;
-    Some(Place { triangle: hit.triangle, shares: hit.barycentric })
+    Some(Place {
+        triangle: hit.triangle,
+        shares: hit.barycentric,
+    })
 }
 
 /// Whether most of the scan near the warped template faces the other way.
@@ -278,12 +330,17 @@ fn is_inside_out(template: &Template, warped: &[Vec3], scan: &Surface) -> bool {
     /// Only the near ones know, mm.
     const NEAR_MM: f32 = 10.0;
     let normals = smooth_normals(warped, template.triangles);
-    let free: Vec<usize> = (0..warped.len()).filter(|&v| template.freedom[v] >= 1.0).collect();
+    let free: Vec<usize> = (0..warped.len())
+        .filter(|&v| template.freedom[v] >= 1.0)
+        .collect();
     let step = (free.len() / ASKED).max(1);
     let votes: f32 = free
         .iter()
         .step_by(step)
-        .filter_map(|&v| scan.closest(warped[v], NEAR_MM).map(|hit| scan.normal(&hit).dot(normals[v]).signum()))
+        .filter_map(|&v| {
+            scan.closest(warped[v], NEAR_MM)
+                .map(|hit| scan.normal(&hit).dot(normals[v]).signum())
+        })
         .sum();
     votes < 0.0
 }

@@ -56,7 +56,10 @@ struct Pairs {
     given: usize,
 }
 
-#[allow(clippy::too_many_arguments, reason = "one call: the stages of `fit` share these")]
+#[allow(
+    clippy::too_many_arguments,
+    reason = "one call: the stages of `fit` share these"
+)]
 pub(crate) fn refine(
     template: &Template,
     target: &Target,
@@ -69,35 +72,64 @@ pub(crate) fn refine(
 ) -> Result<Refined, FitError> {
     let normal = |p: &Place| {
         let ids = template.triangles[p.triangle as usize];
-        (0..3).map(|k| rest.normals()[ids[k] as usize] * p.shares[k]).sum::<Vec3>().normalize_or_zero()
+        (0..3)
+            .map(|k| rest.normals()[ids[k] as usize] * p.shares[k])
+            .sum::<Vec3>()
+            .normalize_or_zero()
     };
     let mut feature = FeatureMesh::new(from, &places.iter().map(normal).collect::<Vec<_>>());
     let mut places = places.to_vec();
     let give = vec![options.give_mm.0; from.len()];
-    let mut pairs = Pairs { from: from.to_vec(), to: to.to_vec(), give, given: from.len() };
+    let mut pairs = Pairs {
+        from: from.to_vec(),
+        to: to.to_vec(),
+        give,
+        given: from.len(),
+    };
     let mut positions = vec![Vec3::ZERO; template.positions.len()];
     warp.apply(template.positions, &mut positions);
     for _ in 0..options.rounds {
         let warped = Surface::new(&positions, template.triangles)?;
-        let mut points: Vec<Vec3> = places.iter().map(|p| p.on(&positions, template.triangles)).collect();
+        let mut points: Vec<Vec3> = places
+            .iter()
+            .map(|p| p.on(&positions, template.triangles))
+            .collect();
         let before = pairs.from.len();
-        let inside = sample(template, target, &warped, &feature, &mut places, &mut points, &mut pairs, options);
+        let inside = sample(
+            template,
+            target,
+            &warped,
+            &feature,
+            &mut places,
+            &mut points,
+            &mut pairs,
+            options,
+        );
         feature.split(&inside, &points);
         if pairs.from.len() == before {
             break;
         }
-        let gap = (before..pairs.from.len()).map(|i| warp.point(pairs.from[i]).distance(pairs.to[i])).sum::<f32>()
+        let gap = (before..pairs.from.len())
+            .map(|i| warp.point(pairs.from[i]).distance(pairs.to[i]))
+            .sum::<f32>()
             / (pairs.from.len() - before) as f32;
         warp = solve(template, &mut pairs, before, should, &mut positions, warp)?;
         if gap < SETTLED_MM {
             break;
         }
     }
-    Ok(Refined { positions, warp, found: pairs.from.len() - pairs.given })
+    Ok(Refined {
+        positions,
+        warp,
+        found: pairs.from.len() - pairs.given,
+    })
 }
 
 /// One round's new vertices: subdivide, project, reject, transfer. Returns each triangle's vertex.
-#[allow(clippy::too_many_arguments, reason = "what a round reads and what it extends")]
+#[allow(
+    clippy::too_many_arguments,
+    reason = "what a round reads and what it extends"
+)]
 fn sample(
     template: &Template,
     target: &Target,
@@ -119,12 +151,17 @@ fn sample(
         }
         let centre = (a + b + c) / 3.0;
         let reach = (REACH * edge).clamp(REACH_MM.0, REACH_MM.1);
-        let pair = on_scan(target, centre, normals[t], reach)
-            .and_then(|(on_scan, normal)| partner(template, warped, on_scan, normal, corners).map(|p| (p, on_scan)));
+        let pair = on_scan(target, centre, normals[t], reach).and_then(|(on_scan, normal)| {
+            partner(template, warped, on_scan, normal, corners).map(|p| (p, on_scan))
+        });
         let at = match pair {
             Some((at, on_scan)) => {
                 let from = at.on(template.positions, template.triangles);
-                if pairs.from.iter().all(|p| p.distance_squared(from) > APART_MM * APART_MM) {
+                if pairs
+                    .from
+                    .iter()
+                    .all(|p| p.distance_squared(from) > APART_MM * APART_MM)
+                {
                     pairs.from.push(from);
                     pairs.to.push(on_scan);
                     pairs.give.push(options.give_mm.1);
@@ -145,7 +182,10 @@ fn sample(
 
 /// Where the scan lies for a new vertex: the nearer of what is in front and behind, else the nearest around.
 fn on_scan(target: &Target, centre: Vec3, normal: Vec3, reach: f32) -> Option<(Vec3, Vec3)> {
-    let facing = Facing { direction: normal, cosine: 0.4 };
+    let facing = Facing {
+        direction: normal,
+        cosine: 0.4,
+    };
     [normal, -normal]
         .into_iter()
         .filter_map(|way| target.ray(centre, way, reach, facing))
@@ -155,15 +195,39 @@ fn on_scan(target: &Target, centre: Vec3, normal: Vec3, reach: f32) -> Option<(V
 }
 
 /// The template's place for a point of the scan, if it is beyond doubt.
-fn partner(template: &Template, warped: &Surface, on_scan: Vec3, normal: Vec3, corners: [Vec3; 3]) -> Option<Place> {
-    let hit = warped.closest_facing(on_scan, REACH_MM.1, Facing { direction: normal, cosine: AGREE })?;
+fn partner(
+    template: &Template,
+    warped: &Surface,
+    on_scan: Vec3,
+    normal: Vec3,
+    corners: [Vec3; 3],
+) -> Option<Place> {
+    let hit = warped.closest_facing(
+        on_scan,
+        REACH_MM.1,
+        Facing {
+            direction: normal,
+            cosine: AGREE,
+        },
+    )?;
     let ids = template.triangles[hit.triangle as usize];
     let free = ids.iter().all(|&v| template.freedom[v as usize] >= 0.5);
-    let corner = corners.iter().map(|c| c.distance(hit.point)).fold(f32::INFINITY, f32::min);
+    let corner = corners
+        .iter()
+        .map(|c| c.distance(hit.point))
+        .fold(f32::INFINITY, f32::min);
     let gentle = hit.distance <= STEEPEST * corner;
-    let straight = hit.distance < 1.0 || (on_scan - hit.point).dot(normal).abs() > 0.6 * hit.distance;
-    (free && gentle && straight && !warped.on_border(&hit) && warped.normal(&hit).dot(normal) > AGREE)
-        .then_some(Place { triangle: hit.triangle, shares: hit.barycentric })
+    let straight =
+        hit.distance < 1.0 || (on_scan - hit.point).dot(normal).abs() > 0.6 * hit.distance;
+    (free
+        && gentle
+        && straight
+        && !warped.on_border(&hit)
+        && warped.normal(&hit).dot(normal) > AGREE)
+        .then_some(Place {
+            triangle: hit.triangle,
+            shares: hit.barycentric,
+        })
 }
 
 /// Warps from rest with all pairs; new pairs (from `first` on) beside faces that turn over are dropped again. If that
@@ -200,16 +264,34 @@ fn drop_near(template: &Template, pairs: &mut Pairs, first: usize, bad: &[usize]
     const SUSPECTS: usize = 3;
     let mut keep = vec![true; pairs.from.len()];
     for &face in bad {
-        let centre = template.triangles[face].iter().map(|&v| template.positions[v as usize]).sum::<Vec3>() / 3.0;
+        let centre = template.triangles[face]
+            .iter()
+            .map(|&v| template.positions[v as usize])
+            .sum::<Vec3>()
+            / 3.0;
         let mut order: Vec<usize> = (first..pairs.from.len()).collect();
         order.sort_by(|&a, &b| {
-            pairs.from[a].distance_squared(centre).total_cmp(&pairs.from[b].distance_squared(centre))
+            pairs.from[a]
+                .distance_squared(centre)
+                .total_cmp(&pairs.from[b].distance_squared(centre))
         });
         for &suspect in order.iter().take(SUSPECTS) {
             keep[suspect] = false;
         }
     }
-    let kept = |list: &[Vec3]| list.iter().zip(&keep).filter(|(_, k)| **k).map(|(p, _)| *p).collect::<Vec<_>>();
+    let kept = |list: &[Vec3]| {
+        list.iter()
+            .zip(&keep)
+            .filter(|(_, k)| **k)
+            .map(|(p, _)| *p)
+            .collect::<Vec<_>>()
+    };
     (pairs.from, pairs.to) = (kept(&pairs.from), kept(&pairs.to));
-    pairs.give = pairs.give.iter().zip(&keep).filter(|(_, k)| **k).map(|(g, _)| *g).collect();
+    pairs.give = pairs
+        .give
+        .iter()
+        .zip(&keep)
+        .filter(|(_, k)| **k)
+        .map(|(g, _)| *g)
+        .collect();
 }

@@ -5,10 +5,10 @@
 
 use glam::Vec3;
 
+use super::Fit;
 use super::Template;
 use super::align::Similarity;
 use super::turned::{face_normals, turned};
-use super::Fit;
 use crate::closest::{Surface, SurfaceError};
 
 /// Places on the scan from which the skin is looked for.
@@ -32,10 +32,16 @@ impl Spread {
     /// Of a list; zeros if it is empty.
     pub fn of(mut values: Vec<f32>) -> Self {
         values.sort_by(f32::total_cmp);
-        let Some(&max) = values.last() else { return Self::default() };
+        let Some(&max) = values.last() else {
+            return Self::default();
+        };
         let sum: f64 = values.iter().map(|v| f64::from(*v)).sum();
         let p95 = values[(values.len() - 1) * 95 / 100];
-        Self { mean: sum / values.len() as f64, p95: f64::from(p95), max: f64::from(max) }
+        Self {
+            mean: sum / values.len() as f64,
+            p95: f64::from(p95),
+            max: f64::from(max),
+        }
     }
 }
 
@@ -64,13 +70,23 @@ pub fn report(
     face: &[bool],
 ) -> Result<Report, SurfaceError> {
     let skin = Surface::new(&fit.positions, template.triangles)?;
-    let errors = fit.landmarks.iter().zip(landmarks).map(|(at, (_, to))| at.distance(*to)).collect();
+    let errors = fit
+        .landmarks
+        .iter()
+        .zip(landmarks)
+        .map(|(at, (_, to))| at.distance(*to))
+        .collect();
     let there = (0..fit.positions.len())
         .filter(|&v| face.get(v).copied().unwrap_or(false))
-        .filter_map(|v| scan.closest(fit.positions[v], f32::INFINITY).map(|hit| hit.distance))
+        .filter_map(|v| {
+            scan.closest(fit.positions[v], f32::INFINITY)
+                .map(|hit| hit.distance)
+        })
         .collect();
     let on_face = |t: u32| {
-        template.triangles[t as usize].iter().all(|&v| face.get(v as usize).copied().unwrap_or(false))
+        template.triangles[t as usize]
+            .iter()
+            .all(|&v| face.get(v as usize).copied().unwrap_or(false))
     };
     let back = samples(scan, SAMPLES)
         .into_iter()
@@ -123,8 +139,15 @@ fn samples(surface: &Surface, count: usize) -> Vec<Vec3> {
             due += spacing;
             // The two-dimensional golden sequence, folded into the triangle.
             let i = points.len() as f64 + 0.5;
-            let (u, v) = ((i * 0.754_877_666_246_693).fract() as f32, (i * 0.569_840_290_998_053).fract() as f32);
-            let (u, v) = if u + v > 1.0 { (1.0 - u, 1.0 - v) } else { (u, v) };
+            let (u, v) = (
+                (i * 0.754_877_666_246_693).fract() as f32,
+                (i * 0.569_840_290_998_053).fract() as f32,
+            );
+            let (u, v) = if u + v > 1.0 {
+                (1.0 - u, 1.0 - v)
+            } else {
+                (u, v)
+            };
             points.push(a + (b - a) * u + (c - a) * v);
         }
     }

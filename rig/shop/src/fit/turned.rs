@@ -15,7 +15,12 @@ pub(crate) fn face_normals(positions: &[Vec3], triangles: &[[u32; 3]]) -> Vec<Ve
 
 /// The faces whose normal has turned further from the one it should have than `cosine` allows. A face without area
 /// before cannot turn; one that lost its area has.
-pub fn turned(positions: &[Vec3], triangles: &[[u32; 3]], should: &[Vec3], cosine: f32) -> Vec<usize> {
+pub fn turned(
+    positions: &[Vec3],
+    triangles: &[[u32; 3]],
+    should: &[Vec3],
+    cosine: f32,
+) -> Vec<usize> {
     face_normals(positions, triangles)
         .iter()
         .zip(should)

@@ -27,7 +27,9 @@ pub fn visible(positions: &[Vec3], triangles: &[[u32; 3]]) -> Vec<f32> {
             let open = (0..RAYS)
                 .filter(|&i| {
                     let way = (*n + spiral(i)).normalize_or(*n);
-                    surface.ray(*p + *n * 0.05, way, FREE_MM, Facing::ANY).is_none()
+                    surface
+                        .ray(*p + *n * 0.05, way, FREE_MM, Facing::ANY)
+                        .is_none()
                 })
                 .count();
             let share = (open as f32 / RAYS as f32 - SEEN.0) / (SEEN.1 - SEEN.0);

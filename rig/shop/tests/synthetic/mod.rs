@@ -76,42 +76,89 @@ impl Pair {
         let mesh = &head.skin.mesh;
         let (positions, triangles) = (mesh.positions.clone(), mesh.triangles.clone());
         let freedom = visible(&positions, &triangles);
-        let freedom: Vec<f32> = freedom.iter().zip(&head.skin.wet).map(|(f, wet)| f * (1.0 - wet)).collect();
-        let face: Vec<bool> = positions.iter().zip(&freedom).map(|(p, f)| *f >= 1.0 && on_face(*p)).collect();
+        let freedom: Vec<f32> = freedom
+            .iter()
+            .zip(&head.skin.wet)
+            .map(|(f, wet)| f * (1.0 - wet))
+            .collect();
+        let face: Vec<bool> = positions
+            .iter()
+            .zip(&freedom)
+            .map(|(p, f)| *f >= 1.0 && on_face(*p))
+            .collect();
         let marks: Vec<Vec3> = MARKS
             .iter()
-            .flat_map(|&[x, y, z]| if x == 0.0 { vec![vec3(x, y, z)] } else { vec![vec3(x, y, z), vec3(-x, y, z)] })
+            .flat_map(|&[x, y, z]| {
+                if x == 0.0 {
+                    vec![vec3(x, y, z)]
+                } else {
+                    vec![vec3(x, y, z), vec3(-x, y, z)]
+                }
+            })
             .map(|p| nearest(&positions, &freedom, p))
             .collect();
-        let landmarks =
-            marks.iter().enumerate().map(|(i, &p)| (p, warp(p) + random(i as u32, 7) * faults.clumsy_mm)).collect();
+        let landmarks = marks
+            .iter()
+            .enumerate()
+            .map(|(i, &p)| (p, warp(p) + random(i as u32, 7) * faults.clumsy_mm))
+            .collect();
         let truth = positions.iter().map(|p| warp(*p)).collect();
-        let seen: Vec<[u32; 3]> =
-            triangles.iter().copied().filter(|t| t.iter().all(|&v| freedom[v as usize] > 0.0)).collect();
+        let seen: Vec<[u32; 3]> = triangles
+            .iter()
+            .copied()
+            .filter(|t| t.iter().all(|&v| freedom[v as usize] > 0.0))
+            .collect();
         let (points, faces) = finer(&positions, &mesh.normals, &seen, parts);
         let scanned = |p: Vec3| {
             let hole = faults.holes && HOLES.iter().any(|h| p.distance(Vec3::from(*h)) < 7.0);
             p.z > -25.0 && !hole
         };
-        let faces = faces.into_iter().filter(|t| t.iter().all(|&v| scanned(points[v as usize]))).collect();
-        let points =
-            points.iter().enumerate().map(|(i, p)| warp(*p) + random(i as u32, 3) * faults.noise_mm).collect();
-        Self { positions, triangles, freedom, face, scan: (points, faces), landmarks, truth }
+        let faces = faces
+            .into_iter()
+            .filter(|t| t.iter().all(|&v| scanned(points[v as usize])))
+            .collect();
+        let points = points
+            .iter()
+            .enumerate()
+            .map(|(i, p)| warp(*p) + random(i as u32, 3) * faults.noise_mm)
+            .collect();
+        Self {
+            positions,
+            triangles,
+            freedom,
+            face,
+            scan: (points, faces),
+            landmarks,
+            truth,
+        }
     }
 
     pub fn template(&self) -> Template<'_> {
-        Template { positions: &self.positions, triangles: &self.triangles, freedom: &self.freedom }
+        Template {
+            positions: &self.positions,
+            triangles: &self.triangles,
+            freedom: &self.freedom,
+        }
     }
 
     /// How far landmarks on the fitted skin are from where they should be, mm.
     pub fn landmark_errors(&self, fit: &Fit, warp: impl Fn(Vec3) -> Vec3) -> Vec<f32> {
-        self.landmarks.iter().zip(&fit.landmarks).map(|((from, _), at)| at.distance(warp(*from))).collect()
+        self.landmarks
+            .iter()
+            .zip(&fit.landmarks)
+            .map(|((from, _), at)| at.distance(warp(*from)))
+            .collect()
     }
 }
 
 /// Holes in the scan: cheek, forehead, side of the nose, under the lip, jaw.
-const HOLES: [[f32; 3]; 5] =
-    [[45.0, 0.0, 88.0], [-30.0, 90.0, 92.0], [-12.0, 15.0, 112.0], [12.0, -60.0, 106.0], [-62.0, -30.0, 50.0]];
+const HOLES: [[f32; 3]; 5] = [
+    [45.0, 0.0, 88.0],
+    [-30.0, 90.0, 92.0],
+    [-12.0, 15.0, 112.0],
+    [12.0, -60.0, 106.0],
+    [-62.0, -30.0, 50.0],
+];
 
 /// The part of a head that has a face's accuracy to keep.
 pub fn on_face(p: Vec3) -> bool {
@@ -120,7 +167,12 @@ pub fn on_face(p: Vec3) -> bool {
 
 /// Smooth warps a fit must undo: a smaller head, a wide one, a narrow one, one with a long nose.
 pub fn warp(kind: usize) -> impl Fn(Vec3) -> Vec3 + Copy {
-    let scale = [vec3(0.82, 0.78, 0.8), vec3(1.12, 0.97, 1.0), vec3(0.88, 1.05, 1.03), vec3(1.0, 1.0, 1.0)][kind];
+    let scale = [
+        vec3(0.82, 0.78, 0.8),
+        vec3(1.12, 0.97, 1.0),
+        vec3(0.88, 1.05, 1.03),
+        vec3(1.0, 1.0, 1.0),
+    ][kind];
     move |p: Vec3| {
         let wave = vec3(
             2.5 * (p.y / 41.0).sin() * (p.x / 60.0).sin(),
@@ -128,14 +180,23 @@ pub fn warp(kind: usize) -> impl Fn(Vec3) -> Vec3 + Copy {
             3.0 * (p.y / 33.0 + 1.0).sin() * (-(p.x / 55.0).powi(2)).exp(),
         );
         let nose = (-(p - vec3(0.0, 2.0, 128.0)).length_squared() / 700.0).exp();
-        let long = if kind == 3 { vec3(0.0, -4.0, 12.0) * nose } else { Vec3::ZERO };
+        let long = if kind == 3 {
+            vec3(0.0, -4.0, 12.0) * nose
+        } else {
+            Vec3::ZERO
+        };
         p * scale + wave + long
     }
 }
 
 fn nearest(positions: &[Vec3], freedom: &[f32], p: Vec3) -> Vec3 {
-    let free = positions.iter().zip(freedom).filter(|(_, f)| **f >= 1.0).map(|(q, _)| *q);
-    free.min_by(|a, b| a.distance(p).total_cmp(&b.distance(p))).unwrap_or(p)
+    let free = positions
+        .iter()
+        .zip(freedom)
+        .filter(|(_, f)| **f >= 1.0)
+        .map(|(q, _)| *q);
+    free.min_by(|a, b| a.distance(p).total_cmp(&b.distance(p)))
+        .unwrap_or(p)
 }
 
 /// The same every run: about normal in each axis, unit deviation.
@@ -143,7 +204,8 @@ fn random(i: u32, salt: u32) -> Vec3 {
     let one = |k: u32| {
         let mut sum = 0.0;
         for j in 0..4 {
-            let mut h = i.wrapping_mul(0x9E37_79B9) ^ (k * 31 + j + salt * 977).wrapping_mul(0x85EB_CA6B);
+            let mut h =
+                i.wrapping_mul(0x9E37_79B9) ^ (k * 31 + j + salt * 977).wrapping_mul(0x85EB_CA6B);
             h = (h ^ (h >> 15)).wrapping_mul(0x2C1B_3C6D);
             h = (h ^ (h >> 12)).wrapping_mul(0x297A_2D39);
             sum += (h >> 8) as f32 / (1 << 24) as f32 - 0.5;
@@ -155,7 +217,12 @@ fn random(i: u32, salt: u32) -> Vec3 {
 
 /// Cuts every triangle into `parts` squared, bulged by the vertex normals (Phong tessellation), so that the scan is no
 /// polyhedron with the template's own corners alone.
-fn finer(positions: &[Vec3], normals: &[Vec3], triangles: &[[u32; 3]], parts: u32) -> (Vec<Vec3>, Vec<[u32; 3]>) {
+fn finer(
+    positions: &[Vec3],
+    normals: &[Vec3],
+    triangles: &[[u32; 3]],
+    parts: u32,
+) -> (Vec<Vec3>, Vec<[u32; 3]>) {
     let (mut points, mut faces) = (Vec::new(), Vec::new());
     // By the corners' numbers and shares, so that neighbours agree on what lies on their edge.
     let mut known: HashMap<[(u32, u32); 3], u32> = HashMap::new();
@@ -166,9 +233,17 @@ fn finer(positions: &[Vec3], normals: &[Vec3], triangles: &[[u32; 3]], parts: u3
             let shares = [parts - i - j, i, j];
             let share = shares.map(|k| k as f32 / parts as f32);
             let flat: Vec3 = (0..3).map(|k| p[k] * share[k]).sum();
-            let round: Vec3 = (0..3).map(|k| (flat - n[k] * (flat - p[k]).dot(n[k])) * share[k]).sum();
+            let round: Vec3 = (0..3)
+                .map(|k| (flat - n[k] * (flat - p[k]).dot(n[k])) * share[k])
+                .sum();
             let point = flat.lerp(round, 0.6);
-            let mut key = [0, 1, 2].map(|k| if shares[k] == 0 { (u32::MAX, 0) } else { (t[k], shares[k]) });
+            let mut key = [0, 1, 2].map(|k| {
+                if shares[k] == 0 {
+                    (u32::MAX, 0)
+                } else {
+                    (t[k], shares[k])
+                }
+            });
             key.sort_unstable();
             *known.entry(key).or_insert_with(|| {
                 points.push(point);
