@@ -38,7 +38,7 @@ const PICTURES: u32 = 8;
 pub fn run(args: &BenchArgs) -> anyhow::Result<()> {
     let started = Wall::now();
     let utterance = Utterance::demo()?;
-    let cast = Cast::reference()?;
+    let cast = Cast::load(args.cast.head.as_deref())?;
     let part = Part::new(&cast, &utterance.segments, Some(1));
     let mut performance = Performance::new(Arc::clone(&cast.head), part.clone());
     let mut instant = Instant::default();
@@ -60,7 +60,7 @@ pub fn run(args: &BenchArgs) -> anyhow::Result<()> {
         "speech": speech(&part, ticks),
         "simulation": simulation(&cast, &part, ticks),
         "render": render(&cast, &gpu, &mut performance)?,
-        "export": export(utterance)?,
+        "export": export(&cast, utterance)?,
         "rss_mb": peak_mb(),
         "adapter": gpu.info().name,
     });
@@ -144,11 +144,12 @@ fn render(cast: &Cast, gpu: &Gpu, performance: &mut Performance) -> anyhow::Resu
 }
 
 /// The whole export of the demo at its defaults, from labels to a file that is thrown away.
-fn export(utterance: Utterance) -> anyhow::Result<Value> {
+fn export(cast: &Cast, utterance: Utterance) -> anyhow::Result<Value> {
     let folder = tempfile::tempdir()?;
     let started = Wall::now();
     let clip_s = seconds(utterance.ticks);
     let job = Job {
+        cast: cast.clone(),
         utterance,
         size: SIZES[0],
         fps: Fps { num: 30, den: 1 },

@@ -3,6 +3,7 @@
 //! Only words and their meaning; the work is in the module of each command's name. Values that
 //! need reading (sizes, rates, colours) are in [`values`].
 
+mod head;
 mod values;
 
 use std::path::PathBuf;
@@ -10,6 +11,7 @@ use std::path::PathBuf;
 use clap::{ArgAction, Args, Parser, Subcommand, ValueEnum};
 use mouthpiece_render::{Background, Camera, Tier, View};
 
+pub use head::{CalibrateArgs, HeadCommand, InfoArgs};
 pub use values::{Fps, Rgb, Size};
 
 /// A real-time, speech-driven talking head: phoneme labels and sound in, a speaking face out.
@@ -38,6 +40,8 @@ pub enum Command {
     Curves(CurvesArgs),
     Labels(LabelsArgs),
     Still(StillArgs),
+    #[command(subcommand)]
+    Head(HeadCommand),
     Bench(BenchArgs),
     Doctor(DoctorArgs),
     #[command(hide = true)]
@@ -94,6 +98,16 @@ pub struct StageArgs {
     /// Seed of the blinks and glances of an idle face
     #[arg(long, value_name = "N", default_value_t = 1)]
     pub seed: u64,
+    #[command(flatten)]
+    pub cast: CastArgs,
+}
+
+/// Who speaks.
+#[derive(Clone, Debug, Default, Args)]
+pub struct CastArgs {
+    /// A head file (.glb) [default: the built-in head]
+    #[arg(long, value_name = "F")]
+    pub head: Option<PathBuf>,
 }
 
 /// What is to be said.
@@ -140,6 +154,8 @@ pub struct ExportArgs {
     pub fps: Fps,
     #[command(flatten)]
     pub look: LookArgs,
+    #[command(flatten)]
+    pub cast: CastArgs,
     /// Seed of blinks and glances: the same seed, the same video
     #[arg(long, value_name = "N", default_value_t = 1)]
     pub seed: u64,
@@ -187,6 +203,8 @@ pub struct CurvesArgs {
     /// Seed of blinks and glances; without one the face does nothing but speak
     #[arg(long, value_name = "N")]
     pub seed: Option<u64>,
+    #[command(flatten)]
+    pub cast: CastArgs,
 }
 
 /// Read a label file, check it, and write it as another
@@ -235,6 +253,8 @@ pub struct StillArgs {
     pub phone: Option<String>,
     #[command(flatten)]
     pub look: LookArgs,
+    #[command(flatten)]
+    pub cast: CastArgs,
     /// Size of the picture in pixels
     #[arg(long, value_name = "WxH", default_value = "640x480")]
     pub size: Size,
@@ -250,6 +270,8 @@ pub struct BenchArgs {
     /// Machine-readable output
     #[arg(long)]
     pub json: bool,
+    #[command(flatten)]
+    pub cast: CastArgs,
 }
 
 /// What this machine has (GPU, sound, display) and what to install
@@ -339,7 +361,13 @@ mod tests {
     #[test]
     fn every_command_shows_an_example() {
         use clap::CommandFactory as _;
-        for command in Cli::command().get_subcommands() {
+        let whole = Cli::command();
+        let all = whole.get_subcommands().flat_map(|command| {
+            let below = command.get_subcommands();
+            let itself = (!command.has_subcommands()).then_some(command);
+            below.chain(itself)
+        });
+        for command in all {
             let help = command.get_after_help().map(ToString::to_string);
             assert!(
                 help.unwrap_or_default().contains("mouthpiece "),

@@ -26,7 +26,7 @@ const MEASURED: [&str; 5] = [
 /// Runs the command.
 pub fn run(args: &CurvesArgs) -> anyhow::Result<()> {
     let utterance = Utterance::load(&args.input)?;
-    let cast = Cast::reference()?;
+    let cast = Cast::load(args.cast.head.as_deref())?;
     let part = Part::new(&cast, &utterance.segments, args.seed);
     let rate = args.rate;
     // Both ends count: a second at 100 Hz is 101 rows.

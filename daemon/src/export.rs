@@ -27,6 +27,7 @@ use encoder::Encoder;
 
 /// Everything that decides what an export looks like, apart from where it goes.
 pub struct Job {
+    pub cast: Cast,
     pub utterance: Utterance,
     pub size: Size,
     pub fps: Fps,
@@ -39,6 +40,7 @@ pub struct Job {
 pub fn run(args: &ExportArgs) -> anyhow::Result<()> {
     let job = Job {
         utterance: Utterance::load(&args.input)?,
+        cast: Cast::load(args.cast.head.as_deref())?,
         size: args.size,
         fps: args.fps,
         look: args.look.clone(),
@@ -91,8 +93,8 @@ impl Job {
         clip: &Clip,
         bar: &ProgressBar,
     ) -> anyhow::Result<()> {
-        let cast = Cast::reference()?;
-        let part = Part::new(&cast, &self.utterance.segments, Some(self.seed));
+        let cast = &self.cast;
+        let part = Part::new(cast, &self.utterance.segments, Some(self.seed));
         let (fps, frames) = (self.fps, clip.frames);
         let times = (0..frames).map(move |k| fps.ticks(k));
         let instants = Instants::start(Arc::clone(&cast.head), part, times)?;

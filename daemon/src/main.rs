@@ -6,6 +6,7 @@
 //! | [`input`] | labels and sound, from files or the demo |
 //! | [`pipeline`] | labels to key frames, offline: what export, curves and still share |
 //! | [`export`], [`curves`], [`labels`], [`still`], [`bench`](mod@bench), [`doctor`] | the commands of these names |
+//! | [`head`] | the head shop: `mouthpiece head …` |
 //! | [`live`] | `run` and `say`: window, sound, sockets and the clock |
 //! | [`media`] | sound and video files |
 //! | [`interrupt`] | Ctrl-C, for work that ends by itself |
@@ -22,6 +23,7 @@ mod cli;
 mod curves;
 mod doctor;
 mod export;
+mod head;
 mod input;
 mod interrupt;
 mod labels;
@@ -91,6 +93,7 @@ fn dispatch(command: &Command) -> anyhow::Result<()> {
         Command::Curves(args) => curves::run(args),
         Command::Labels(args) => labels::run(args),
         Command::Still(args) => still::run(args),
+        Command::Head(command) => head::run(command),
         Command::Bench(args) => bench::run(args),
         Command::Doctor(_) => doctor::run(),
         Command::Run(args) => live::run(args),

@@ -5,13 +5,14 @@
 //! and encoding. The counter of instants is the only clock: the same utterance,
 //! instants and seed give the same key frames, whatever the machine is doing meanwhile.
 
+use std::path::Path;
 use std::sync::Arc;
 use std::thread::JoinHandle;
 
 use anyhow::Context as _;
 use crossbeam::channel::{Receiver, Sender, bounded};
 use mouthpiece_phonemes::Segment;
-use mouthpiece_rig::{Calibration, Controls, Head, KeyFrame, STEP_TICKS, Simulation, TICK_RATE};
+use mouthpiece_rig::{Controls, Head, KeyFrame, STEP_TICKS, Simulation, TICK_RATE};
 use mouthpiece_speech::{Idle, Speech, Track};
 
 /// The head runs this long before the first instant, so that it is settled by then.
@@ -30,10 +31,14 @@ pub struct Cast {
 }
 
 impl Cast {
-    /// The built-in head.
-    pub fn reference() -> anyhow::Result<Self> {
-        let head = Arc::new(Head::reference()?);
-        let speech = Speech::new(&Calibration::reference()?)?;
+    /// The head in a file, or the built-in one.
+    pub fn load(file: Option<&Path>) -> anyhow::Result<Self> {
+        let head = match file {
+            Some(file) => Head::load(file)?,
+            None => Head::reference()?,
+        };
+        let speech = Speech::new(&head.calibration)?;
+        let head = Arc::new(head);
         Ok(Self { head, speech })
     }
 }
@@ -206,7 +211,7 @@ mod tests {
     /// Frames at any rate are samples of one motion: asking more often changes nothing.
     #[test]
     fn an_instant_does_not_depend_on_those_asked_for_before_it() {
-        let cast = Cast::reference().unwrap();
+        let cast = Cast::load(None).unwrap();
         let mut often = Performance::new(Arc::clone(&cast.head), part(&cast));
         let mut once = Performance::new(Arc::clone(&cast.head), part(&cast));
         let (mut a, mut b) = (Instant::default(), Instant::default());
@@ -220,7 +225,7 @@ mod tests {
 
     #[test]
     fn the_thread_gives_what_the_performance_gives_and_the_head_is_settled_at_first() {
-        let cast = Cast::reference().unwrap();
+        let cast = Cast::load(None).unwrap();
         let times = || (0..20).map(|k| k * 1601);
         let mut performance = Performance::new(Arc::clone(&cast.head), part(&cast));
         let instants = Instants::start(Arc::clone(&cast.head), part(&cast), times()).unwrap();

@@ -106,6 +106,22 @@ impl Calibration {
     /// Fits `head`: some seconds of work.
     #[must_use]
     pub fn fit(head: &Arc<Head>) -> Self {
+        let done = Self::fit_reporting(head, |_, _| Ok::<(), std::convert::Infallible>(()));
+        match done {
+            Ok(calibration) => calibration,
+            Err(never) => match never {},
+        }
+    }
+
+    /// As [`Self::fit`]; calls `progress` with the postures done and all of them, and ends early
+    /// with its error.
+    ///
+    /// # Errors
+    /// Only those of `progress`.
+    pub fn fit_reporting<E>(
+        head: &Arc<Head>,
+        mut progress: impl FnMut(usize, usize) -> Result<(), E>,
+    ) -> Result<Self, E> {
         let mut simulation = Simulation::new(Arc::clone(head));
         simulation.set_lip_contact(false);
         let rest = head.rest_frame();
@@ -113,6 +129,7 @@ impl Calibration {
         let mut rows = Vec::with_capacity(SAMPLES);
         let mut values = [const { Vec::new() }; MEASURES];
         for sample in 0..SAMPLES {
+            progress(sample, SAMPLES)?;
             let x = posture(sample);
             simulation.restore(&rest);
             for _ in 0..SETTLE_STEPS {
@@ -125,10 +142,10 @@ impl Calibration {
             }
         }
         let rest_width_mm = measure(head, &rest).width_mm;
-        Self {
+        Ok(Self {
             rest_width_mm,
             quadratics: values.map(|v| least_squares(&rows, &v)),
-        }
+        })
     }
 
     /// The muscles for a posture: lips by the fit, jaw and tongue as they are.

@@ -2,6 +2,7 @@
 //!
 //! | module | holds |
 //! |---|---|
+//! | `anthropometry` | distances between landmarks, as Farkas names them |
 //! | `articulation` | what a mouth should do, for any head |
 //! | `calibration` | an articulation turned into one head's muscles |
 //! | `control` | one number per muscle, jaw, tongue, lid, gaze and head angle |
@@ -15,12 +16,14 @@
 //! | `key_frame` | the whole state at an instant |
 //! | `subdivision` | the surface that is drawn over the simulated mesh |
 //! | `measure` | aperture, width, protrusion, jaw of a key frame |
+//! | `quality` | how good a triangle mesh is |
 //! | `occlusion` | ambient light that reaches each vertex at rest |
 //!
 //! Millimetres, seconds and radians; +y up, +z out of the face, +x to the subject's left. Stiffness
 //! and damping are per unit of mass. This crate knows neither phones nor pixels.
 #![forbid(unsafe_code)]
 
+mod anthropometry;
 mod articulation;
 mod calibration;
 mod contact;
@@ -31,11 +34,13 @@ mod key_frame;
 mod measure;
 mod muscle;
 mod occlusion;
+mod quality;
 mod reference;
 mod simulation;
 mod subdivision;
 mod tissue;
 
+pub use anthropometry::{Measurement, measurements};
 pub use articulation::{Articulation, Tongue};
 pub use calibration::{Calibration, CalibrationError};
 pub use control::{Control, Controls, Muscle};
@@ -47,6 +52,7 @@ pub use head::{
 pub use key_frame::{KeyFrame, TICK_RATE};
 pub use measure::{Measures, measure};
 pub use muscle::{Contraction, Fibre, GridPoint, MuscleGrid};
+pub use quality::{EdgeLengths, Quality, edge_lengths};
 pub use reference::ReferenceError;
 pub use simulation::{STEP_TICKS, Simulation};
 pub use subdivision::{

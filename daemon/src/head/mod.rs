@@ -1,0 +1,14 @@
+//! `mouthpiece head …`: the head shop's commands.
+
+mod calibrate;
+mod info;
+
+use crate::cli::HeadCommand;
+
+/// Runs one of them.
+pub fn run(command: &HeadCommand) -> anyhow::Result<()> {
+    match command {
+        HeadCommand::Info(args) => info::run(args),
+        HeadCommand::Calibrate(args) => calibrate::run(args),
+    }
+}
