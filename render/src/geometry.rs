@@ -3,7 +3,7 @@
 use glam::{Vec2, Vec3};
 use mouthpiece_rig::{Head, Material, Mesh, Part};
 
-use crate::gpu_data::{PartVertex, SkinMoving, SkinStill, unorm};
+use crate::gpu_data::{PartVertex, SkinMoving, SkinStill, octahedral, unorm};
 use crate::maps;
 use crate::maps::hairline::Hairline;
 
@@ -160,21 +160,15 @@ impl PartGeometry {
     fn add(&mut self, part: &Part) {
         let mesh = &part.mesh;
         let base = self.vertices.len() as u32;
-        let (edge, normals) = match part.material {
-            Material::Hair => (edge_distance(mesh), joined_normals(mesh)),
-            _ => (vec![1.0; mesh.positions.len()], mesh.normals.clone()),
-        };
+        let strands = (part.material == Material::Hair).then(|| strand_directions(mesh));
         for (i, p) in mesh.positions.iter().enumerate() {
             let (bodies, share) = part.between(part.weight[i]);
-            let uv = match part.material {
-                Material::Hair => maps::hair::uv(*p),
-                _ => mesh.uvs[i],
-            };
+            let [tx, ty] = strands.as_ref().map_or([0, 0], |d| octahedral(d[i]));
             self.vertices.push(PartVertex {
                 rest: p.to_array(),
-                normal: normals[i].to_array(),
-                uv: uv.to_array(),
-                shares: [unorm(mesh.occlusion[i]), unorm(share), unorm(edge[i]), 0],
+                normal: mesh.normals[i].to_array(),
+                uv: mesh.uvs[i].to_array(),
+                shares: [unorm(mesh.occlusion[i]), unorm(share), tx, ty],
                 bodies: [bodies[0] as u8, bodies[1] as u8, 0, 0],
             });
         }
@@ -197,81 +191,28 @@ impl PartGeometry {
 /// Iris radii from the pupil at which the ball is behind the lids whatever the gaze.
 const EYE_SEEN_RADII: f32 = 3.4;
 
-/// For each vertex the first one at its place.
-fn welded(mesh: &Mesh) -> Vec<u32> {
-    let mut first_at = std::collections::HashMap::new();
-    let place = |(i, p): (usize, &Vec3)| {
-        let key = (*p * 64.0).round().as_ivec3();
-        *first_at.entry((key.x, key.y, key.z)).or_insert(i as u32)
-    };
-    mesh.positions.iter().enumerate().map(place).collect()
-}
-
-/// Normals with one at each place, so that layers raised along them do not tear at seams and poles.
-fn joined_normals(mesh: &Mesh) -> Vec<Vec3> {
-    let welded = welded(mesh);
+/// Which way the strands run at each vertex: where the texture's v grows; down where it does not say.
+fn strand_directions(mesh: &Mesh) -> Vec<Vec3> {
     let mut sums = vec![Vec3::ZERO; mesh.positions.len()];
-    for (first, normal) in welded.iter().zip(&mesh.normals) {
-        sums[*first as usize] += *normal;
-    }
-    welded
-        .iter()
-        .map(|first| sums[*first as usize].normalize_or(Vec3::Y))
-        .collect()
-}
-
-/// Millimetres from the edge at which hair stands to its full height.
-const EDGE_REACH_MM: f32 = 16.0;
-
-/// Distance of each vertex from the mesh's open edge along the mesh, 0 at it to 1 at [`EDGE_REACH_MM`].
-fn edge_distance(mesh: &Mesh) -> Vec<f32> {
-    let mut sides: std::collections::HashMap<(u32, u32), u32> = std::collections::HashMap::new();
-    // Vertices at one place count as one: a seam is no edge.
-    let welded = welded(mesh);
-    let weld = |i: u32| welded[i as usize];
     for t in &mesh.triangles {
-        for (a, b) in [(t[0], t[1]), (t[1], t[2]), (t[2], t[0])] {
-            let (a, b) = (weld(a), weld(b));
-            *sides.entry((a.min(b), a.max(b))).or_default() += 1;
+        let [a, b, c] = t.map(|i| mesh.positions[i as usize]);
+        let [s, u, w] = t.map(|i| mesh.uvs[i as usize]);
+        let (e, f) = (u - s, w - s);
+        let area = e.perp_dot(f);
+        if area.abs() < 1e-12 {
+            continue;
+        }
+        let along = ((c - a) * e.x - (b - a) * f.x) * area.signum();
+        for &i in t {
+            sums[i as usize] += along.normalize_or_zero();
         }
     }
-    let mut distance = vec![f32::INFINITY; mesh.positions.len()];
-    for (&(a, b), &count) in &sides {
-        if count == 1 {
-            distance[a as usize] = 0.0;
-            distance[b as usize] = 0.0;
-        }
-    }
-    // Relaxation along sides; the order of a hash map does not change where it ends.
-    let mut lengths: Vec<(u32, u32, f32)> = sides
-        .keys()
-        .map(|&(a, b)| {
-            (
-                a,
-                b,
-                mesh.positions[a as usize].distance(mesh.positions[b as usize]),
-            )
+    sums.iter()
+        .zip(&mesh.normals)
+        .map(|(sum, n)| {
+            let down = Vec3::NEG_Y - *n * n.dot(Vec3::NEG_Y);
+            sum.normalize_or(down.normalize_or(Vec3::NEG_Z))
         })
-        .collect();
-    lengths.sort_by_key(|&(a, b, _)| (a, b));
-    for _ in 0..64 {
-        let mut changed = false;
-        for &(a, b, length) in &lengths {
-            let (da, db) = (distance[a as usize], distance[b as usize]);
-            if da + length < db {
-                distance[b as usize] = da + length;
-                changed = true;
-            } else if db + length < da {
-                distance[a as usize] = db + length;
-                changed = true;
-            }
-        }
-        if !changed {
-            break;
-        }
-    }
-    (0..mesh.positions.len() as u32)
-        .map(|i| (distance[weld(i) as usize] / EDGE_REACH_MM).min(1.0))
         .collect()
 }
 

@@ -2,6 +2,7 @@
 //! shaders/part.wgsl and shaders/skin.wgsl.
 
 use bytemuck::{Pod, Zeroable};
+use glam::Vec3;
 
 /// The `Frame` of shaders/frame.wgsl.
 #[repr(C)]
@@ -52,7 +53,7 @@ pub(crate) struct PartVertex {
     pub(crate) rest: [f32; 3],
     pub(crate) normal: [f32; 3],
     pub(crate) uv: [f32; 2],
-    /// Occlusion, share of the second body, distance from the mesh's edge, unused; 255 is 1.
+    /// Occlusion, share of the second body, direction of the strands (see `octahedral`); 255 is 1.
     pub(crate) shares: [u8; 4],
     /// Numbers of the two bodies, unused twice.
     pub(crate) bodies: [u8; 4],
@@ -81,4 +82,16 @@ pub(crate) const PART: wgpu::VertexBufferLayout<'static> = wgpu::VertexBufferLay
 /// 0..1 as a byte.
 pub(crate) fn unorm(value: f32) -> u8 {
     (value.clamp(0.0, 1.0) * 255.0 + 0.5) as u8
+}
+
+/// A direction as two bytes: the octahedron's faces folded into a square.
+pub(crate) fn octahedral(d: Vec3) -> [u8; 2] {
+    let d = d / (d.x.abs() + d.y.abs() + d.z.abs()).max(1e-9);
+    let sign = |v: f32| if v < 0.0 { -1.0 } else { 1.0 };
+    let (x, y) = if d.z < 0.0 {
+        ((1.0 - d.y.abs()) * sign(d.x), (1.0 - d.x.abs()) * sign(d.y))
+    } else {
+        (d.x, d.y)
+    };
+    [unorm(x * 0.5 + 0.5), unorm(y * 0.5 + 0.5)]
 }

@@ -119,6 +119,7 @@ const SKIN: Recipe = Recipe {
 };
 const HAIR: Recipe = Recipe {
     vertex: "hair_vertex",
+    cull: None,
     strands: true,
     ..solid("hair")
 };
@@ -245,7 +246,6 @@ fn pipeline(
     let all = [
         ("DECODE_SRGB", f64::from(u8::from(format.is_srgb()))),
         ("SHADOW_TAPS", f64::from(detail.shadow_taps)),
-        ("HAIR_LAYERS", f64::from(detail.hair_shells)),
         ("SAMPLES", f64::from(samples)),
     ];
     // A constant that a shader does not declare is an error, so each gets its own.

@@ -294,7 +294,7 @@ impl Renderer {
     ) {
         let p = &self.pipelines;
         let (pipeline, maps, instances) = match material {
-            Material::Hair => (&p.hair, Some(&self.maps.hair), self.detail.hair_shells),
+            Material::Hair => (&p.hair, Some(&self.maps.hair), 1),
             Material::Eye => (&p.eye, Some(&self.maps.eye), 1),
             Material::Teeth | Material::Bone => (&p.teeth, None, 1),
             Material::Gums => (&p.gums, None, 1),

@@ -49,10 +49,8 @@ pub(crate) struct Detail {
     pub(crate) shadow_taps: u32,
     /// Anisotropic samples; costly in software.
     pub(crate) anisotropy: u16,
-    /// Side of the hair map in texels.
+    /// Width of the strands' map in texels; it is half as high.
     pub(crate) hair_map: u32,
-    /// Layers of hair above the scalp.
-    pub(crate) hair_shells: u32,
 }
 
 impl Tier {
@@ -79,7 +77,6 @@ impl Tier {
                 shadow_map: 256,
                 shadow_taps: 1,
                 anisotropy: 1,
-                hair_shells: 1,
             },
             Self::Medium => Detail {
                 samples: 4,
@@ -89,17 +86,15 @@ impl Tier {
                 shadow_map: 384,
                 shadow_taps: 4,
                 anisotropy: 1,
-                hair_shells: 2,
             },
             Self::High => Detail {
                 samples: 4,
                 map_width: 4096,
                 eye_map: 1024,
                 hair_map: 1024,
-                shadow_map: 768,
+                shadow_map: 448,
                 shadow_taps: 9,
                 anisotropy: 8,
-                hair_shells: 6,
             },
         }
     }

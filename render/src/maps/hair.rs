@@ -1,72 +1,97 @@
-//! The hair's map: strands that run away from the crown, laid flat round it (azimuthal, equidistant).
-//! R tone of the strand, G how high it stands (decides in which layers it shows), B its shift.
+//! The strands' map that hair cards show: columns of painted strands, roots at the top. The first are dense, then
+//! come loose locks, one thick and the rest thin, then single hairs: `hair` in the head shop says which card shows which.
+//! R tone of the strand, G 255, B its shift, A how much it covers.
 
-use glam::{Vec2, Vec3, vec2, vec3};
+use glam::{Vec2, vec2};
 
 use super::image::Image;
 use super::noise::{Dice, value};
 use super::parallel_rows;
 use super::strokes::{Blend, Field, Stroke};
 
-/// Where the strands part from. Keep in step with shaders/hair.wgsl.
-const CROWN: Vec3 = vec3(0.0, 145.0, -35.0);
-/// Middle of the skull, which directions are taken from.
-const CENTRE: Vec3 = vec3(0.0, 55.0, 5.0);
-/// Radians from the crown to the side of the map.
-const REACH: f32 = 2.4;
+/// Columns of equal width; how many are dense, and how many are loose locks. Keep in step with the head
+/// shop's `hair`.
+const COLUMNS: usize = 8;
+const DENSE: usize = 4;
+const LOOSE: usize = 2;
 
-/// The map's coordinates of a place on the head.
-pub(crate) fn uv(place: Vec3) -> Vec2 {
-    let pole = (CROWN - CENTRE).normalize_or(Vec3::Y);
-    let to = (place - CENTRE).normalize_or(Vec3::Y);
-    let right = Vec3::X;
-    let front = right.cross(pole);
-    let flat = vec2(to.dot(right), to.dot(front));
-    let angle = flat.length().atan2(to.dot(pole));
-    flat.normalize_or_zero() * (angle / REACH * 0.5) + 0.5
-}
-
-/// The map, `side` texels square.
+/// The map, `side` texels wide and half as high.
 pub(crate) fn paint(side: usize) -> Image {
-    let s = side as f32;
-    // Tone, height, shift.
-    let mut field = Field::new(side, side, [0.35, 0.05, 0.5]);
-    let mut dice = Dice::new(1201);
-    // About one strand every 0.6 mm; texels of 0.4 mm at a side of 1024.
-    let strands = side * side / 14;
-    for _ in 0..strands {
-        let root = vec2(dice.roll(), dice.roll());
-        let from_crown = root - 0.5;
-        let away = from_crown.normalize_or_zero();
-        // A whorl at the crown, and locks that lean together.
-        let lock = value(root.x * 34.0, root.y * 34.0, 3) - 0.5;
-        let turn = 0.9 * (-from_crown.length() * 9.0).exp() + 0.75 * lock + 0.18 * dice.spread();
-        let direction = Vec2::from_angle(turn).rotate(away);
-        let bent = Vec2::from_angle(turn + 0.25 * dice.spread()).rotate(away);
-        let length = 0.016 + 0.022 * dice.roll();
-        let middle = root + direction * (length * 0.5);
-        let points = [root * s, middle * s, (middle + bent * (length * 0.5)) * s];
-        let half_width = (0.00055 + 0.0003 * dice.roll()) * s;
-        let clump = value(root.x * 70.0, root.y * 70.0, 8);
-        let strength = [
-            0.25 + 0.30 * dice.roll() + 0.40 * clump,
-            0.30 + 0.70 * dice.roll(),
-            dice.roll(),
-        ];
-        let stroke = Stroke {
-            points,
-            half_width: half_width.max(0.45),
-            strength,
-        };
-        field.draw(&stroke, Blend::Over);
+    let (width, height) = (side, (side / 2).max(1));
+    // Tone, shift, cover.
+    let mut field = Field::new(width, height, [0.30, 0.5, 0.0]);
+    for column in 0..COLUMNS {
+        strands(&mut field, column);
     }
-    let mut image = Image::new(side, side);
-    parallel_rows(&mut image.texels, side, |y, row| {
+    let mut image = Image::new(width, height);
+    parallel_rows(&mut image.texels, width, |y, row| {
         for (x, texel) in row.iter_mut().enumerate() {
-            let [tone, height, shift] =
-                field.values[y * side + x].map(|v| (v.clamp(0.0, 1.0) * 255.0) as u8);
-            *texel = [tone, height, shift, 255];
+            let [tone, shift, cover] =
+                field.values[y * width + x].map(|v| (v.clamp(0.0, 1.0) * 255.0) as u8);
+            *texel = [tone, 255, shift, cover];
         }
     });
     image
+}
+
+/// Strands of one column, back to front.
+fn strands(field: &mut Field<3>, column: usize) {
+    let size = vec2(field.width as f32 / COLUMNS as f32, field.height as f32);
+    let left = column as f32 * size.x;
+    let mut dice = Dice::new(1201 + column as u64);
+    // How many, how wide as a share of the column, how far they stay from its sides.
+    let (count, wide, margin) = if column < DENSE {
+        (150, 0.030, 0.03)
+    } else if column == DENSE {
+        (46, 0.030, 0.10)
+    } else if column < DENSE + LOOSE {
+        (17, 0.030, 0.08)
+    } else {
+        (3, 0.085, 0.30)
+    };
+    let loose = column >= DENSE;
+    for i in 0..count {
+        let back = 1.0 - i as f32 / count as f32;
+        let across = dice.roll();
+        // Locks: strands of one lock end together and share a tone.
+        let lock = value(
+            across * if loose { 3.0 } else { 5.0 },
+            column as f32 * 7.3,
+            31,
+        );
+        let x = margin + (1.0 - 2.0 * margin) * across;
+        let lean = 0.16 * dice.spread() + 0.10 * (lock - 0.5);
+        let bend = 0.10 * dice.spread();
+        let (start, end) = if loose {
+            (
+                0.02 + 0.22 * dice.roll(),
+                0.58 + 0.40 * dice.roll() * (0.4 + 0.6 * lock),
+            )
+        } else {
+            (
+                0.02 + 0.34 * dice.roll(),
+                0.60 + 0.39 * (0.5 * dice.roll() + 0.5 * lock),
+            )
+        };
+        // Tips of a lock draw together.
+        let gather = (lock - across) * if loose { 0.16 } else { 0.08 };
+        let at = |across: f32, along: f32| {
+            vec2(
+                left + across.clamp(margin * 0.5, 1.0 - margin * 0.5) * size.x,
+                along * size.y,
+            )
+        };
+        let points: [Vec2; 3] = [
+            at(x, start),
+            at(x + 0.5 * lean + bend, 0.5 * (start + end)),
+            at(x + lean + gather, end),
+        ];
+        let tone = 0.24 + 0.34 * lock + 0.36 * dice.roll() - 0.14 * back;
+        let stroke = Stroke {
+            points,
+            half_width: (wide * (0.6 + 0.8 * dice.roll()) * size.x).max(0.5),
+            strength: [tone.clamp(0.0, 1.0), dice.roll(), 1.0],
+        };
+        field.draw(&stroke, Blend::Strand);
+    }
 }

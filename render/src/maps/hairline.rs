@@ -1,29 +1,25 @@
-//! Hairs on the skin along the feature lines `hairline_*`, so that the cap of hair does not end like a
-//! cap: roots just inside the line, tips over it. A head without these lines has none.
+//! How deep under hair a place of the skin lies, by the features `hairline_*`: what lies deep is not drawn.
 
 use glam::{Vec2, vec2};
 use mouthpiece_rig::Head;
 
-use super::lines::{CHART_MM, Line, off_step};
-use super::noise::Dice;
-use super::strokes::{Blend, Field, Stroke};
-use super::{CHART_HEIGHT, WINDOW_MAX, WINDOW_MIN};
+use super::{CHART_HEIGHT, RADIUS};
 
-/// Hairs a mm of the line.
-const HAIRS_PER_MM: f32 = 9.0;
+/// Millimetres a unit of the chart's `uv`.
+const CHART_MM: Vec2 = vec2(std::f32::consts::TAU * RADIUS, CHART_HEIGHT);
 
 /// Both sides of the hairline, from the forehead backwards.
 #[derive(Clone, Debug)]
 pub(crate) struct Hairline {
     /// The line, and the hand at which the hair lies as one walks it: the left one (with rows running
     /// down) on the subject's left side. Left, right.
-    sides: [(Line, f32); 2],
+    sides: [(Vec<Vec2>, f32); 2],
 }
 
 impl Hairline {
     /// None where the head has no such lines.
     pub(crate) fn of(head: &Head) -> Option<Self> {
-        let side = |name, hand| Some((Line::of(head, name)?.outward(), hand));
+        let side = |name, hand| Some((line(head, name)?, hand));
         Some(Self {
             sides: [side("hairline_l", 1.0)?, side("hairline_r", -1.0)?],
         })
@@ -34,7 +30,7 @@ impl Hairline {
         let (line, hand) = &self.sides[usize::from(uv.x < 0.5)];
         let p = uv * CHART_MM;
         let (mut nearest, mut facing) = (f32::INFINITY, 0.0_f32);
-        for step in line.points.windows(2) {
+        for step in line.windows(2) {
             let off = off_step(p, step[0], step[1]);
             let squared = off.length_squared();
             if squared > nearest * 1.001 {
@@ -51,43 +47,24 @@ impl Hairline {
     }
 }
 
-/// Lays the hairs into `field`, which covers the window.
-pub(crate) fn paint(field: &mut Field<1>, hairline: &Hairline) {
-    for ((line, hand), seed) in hairline.sides.iter().zip([31, 32]) {
-        let mut dice = Dice::new(seed);
-        for side in line.points.windows(2) {
-            let along = side[1] - side[0];
-            let count = along.length() * HAIRS_PER_MM;
-            let inward = vec2(along.y, -along.x).normalize_or_zero() * *hand;
-            // Part of a hair is a hair by chance: short steps must not lose theirs.
-            for _ in 0..(count + dice.roll()) as usize {
-                let on_line = side[0] + along * dice.roll();
-                let root = on_line
-                    + inward * (10.0 * dice.roll() * dice.roll() - 1.5 + 2.0 * dice.spread());
-                let lean = along.normalize_or_zero() * (0.9 * dice.spread());
-                let direction = (lean - inward).normalize_or_zero();
-                let length_mm = 2.2 + 2.6 * dice.roll();
-                let tip = root + direction * length_mm;
-                let texel = |p: Vec2| {
-                    let share = (p / CHART_MM - WINDOW_MIN) / (WINDOW_MAX - WINDOW_MIN);
-                    share * vec2(field.width as f32, field.height as f32)
-                };
-                let points = [
-                    texel(root),
-                    texel(root.lerp(tip, 0.5) + lean * 0.3),
-                    texel(tip),
-                ];
-                let per_mm = field.height as f32 / CHART_HEIGHT / (WINDOW_MAX.y - WINDOW_MIN.y);
-                let strength = [0.55 + 0.45 * dice.roll()];
-                field.draw(
-                    &Stroke {
-                        points,
-                        half_width: 0.17 * per_mm,
-                        strength,
-                    },
-                    Blend::Cover,
-                );
-            }
-        }
+/// The named feature in mm, from the middle of the face outwards; none where the head has it not.
+fn line(head: &Head, name: &str) -> Option<Vec<Vec2>> {
+    let mut points: Vec<Vec2> = head
+        .feature(name)?
+        .points
+        .iter()
+        .map(|p| *p * CHART_MM)
+        .collect();
+    let from_middle = |p: &Vec2| (p.x - 0.5 * CHART_MM.x).abs();
+    if from_middle(points.first()?) > from_middle(points.last()?) {
+        points.reverse();
     }
+    Some(points)
+}
+
+/// From the nearest point of a step of a line to `p`.
+fn off_step(p: Vec2, from: Vec2, to: Vec2) -> Vec2 {
+    let along = to - from;
+    let share = ((p - from).dot(along) / along.length_squared().max(1e-9)).clamp(0.0, 1.0);
+    p - from - along * share
 }

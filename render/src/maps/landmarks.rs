@@ -1,9 +1,7 @@
-//! Where things are on a face, read off the head: enough to place colour and gloss.
+//! Where things are on a face, read off the head: enough to place gloss and grain.
 
 use glam::{Vec2, Vec3, vec2, vec3};
 use mouthpiece_rig::Head;
-
-use super::{WINDOW_MAX, WINDOW_MIN};
 
 /// Places on the face at rest, mm; sided ones are the subject's left.
 #[derive(Clone, Copy, Debug)]
@@ -59,95 +57,88 @@ impl Landmarks {
     }
 }
 
-/// What lies under each place of the window, on a coarse grid: position, and how red the lips are.
+/// What lies under each place of the skin's map, on a coarse grid.
 #[derive(Clone, Debug)]
 pub(crate) struct Ground {
     pub(crate) width: usize,
     pub(crate) height: usize,
-    /// Position, mm, and vermilion.
-    pub(crate) cells: Vec<(Vec3, f32)>,
+    /// Position, mm, and vermilion; none where no skin is mapped.
+    pub(crate) cells: Vec<Option<(Vec3, f32)>>,
 }
 
 impl Ground {
-    /// Draws the skin's triangles into the window. Folds (inside of lips, nostrils, behind the ears)
+    /// Draws the skin's triangles into the map. Folds (inside of lips, nostrils, behind the ears)
     /// lie over each other: the outermost wins.
     pub(crate) fn of(head: &Head, width: usize, height: usize) -> Self {
-        let mesh = &head.skin.mesh;
-        let mut cells = vec![(Vec3::ZERO, 0.0); width * height];
+        let skin = &head.skin;
+        let mut cells = vec![None; width * height];
         let mut depth = vec![-1.0_f32; width * height];
         let size = vec2(width as f32, height as f32);
-        for t in &mesh.triangles {
-            let corner = t.map(|i| {
-                let i = i as usize;
-                let at = (mesh.uvs[i] - WINDOW_MIN) / (WINDOW_MAX - WINDOW_MIN) * size;
-                (at, mesh.positions[i], head.skin.vermilion[i])
-            });
-            let [a, b, c] = corner;
-            let low = a.0.min(b.0).min(c.0);
-            let high = a.0.max(b.0).max(c.0);
-            // A triangle across the chart's seam would cover everything.
-            if high.x - low.x > size.x * 0.4 {
-                continue;
-            }
-            let area = (b.0 - a.0).perp_dot(c.0 - a.0);
-            if area.abs() < 1e-6 {
-                continue;
-            }
-            let x0 = (low.x - 0.5).ceil().max(0.0) as usize;
-            let y0 = (low.y - 0.5).ceil().max(0.0) as usize;
-            let x1 = (high.x + 0.5).floor().min(size.x) as usize;
-            let y1 = (high.y + 0.5).floor().min(size.y) as usize;
-            for y in y0..y1 {
-                for x in x0..x1 {
-                    let p = vec2(x as f32 + 0.5, y as f32 + 0.5);
-                    let wb = (p - a.0).perp_dot(c.0 - a.0) / area;
-                    let wc = (b.0 - a.0).perp_dot(p - a.0) / area;
-                    let wa = 1.0 - wb - wc;
-                    // Grown a little: no cracks between triangles.
-                    if wa < -0.3 || wb < -0.3 || wc < -0.3 {
-                        continue;
-                    }
-                    let place = a.1 * wa + b.1 * wb + c.1 * wc;
+        for (number, t) in skin.mesh.triangles.iter().enumerate() {
+            let uvs = wedge(head, number);
+            // Past the map's side a triangle goes on at the other.
+            for turn in [0.0, 1.0] {
+                let corner: [(Vec2, Vec3, f32); 3] = std::array::from_fn(|k| {
+                    let i = t[k] as usize;
+                    let at = (uvs[k] - vec2(turn, 0.0)) * size;
+                    (at, skin.mesh.positions[i], skin.vermilion[i])
+                });
+                draw(&corner, (width, height), |at, place, red| {
                     let outward = vec2(place.x, place.z).length();
-                    let at = y * width + x;
                     if outward > depth[at] {
                         depth[at] = outward;
-                        cells[at] = (place, a.2 * wa + b.2 * wb + c.2 * wc);
+                        cells[at] = Some((place, red));
                     }
-                }
+                });
             }
         }
-        let mut ground = Self {
+        Self {
             width,
             height,
             cells,
-        };
-        ground.fill_holes(&depth);
-        ground
-    }
-
-    /// Where nothing was drawn (above the crown, in the eyes) a cylinder stands in.
-    fn fill_holes(&mut self, depth: &[f32]) {
-        for (at, deep) in depth.iter().enumerate() {
-            if *deep < 0.0 {
-                let uv = self.uv(at % self.width, at / self.width);
-                let turn = (uv.x - 0.5) * std::f32::consts::TAU;
-                let place = vec3(
-                    super::RADIUS * turn.sin(),
-                    150.0 - 256.0 * uv.y,
-                    10.0 + super::RADIUS * turn.cos(),
-                );
-                self.cells[at] = (place, 0.0);
-            }
         }
     }
+}
 
-    /// Chart coordinates of the middle of a cell.
-    pub(crate) fn uv(&self, x: usize, y: usize) -> Vec2 {
-        let share = vec2(
-            (x as f32 + 0.5) / self.width as f32,
-            (y as f32 + 0.5) / self.height as f32,
-        );
-        WINDOW_MIN + share * (WINDOW_MAX - WINDOW_MIN)
+/// Texture coordinates of a triangle's corners; past 1 where it crosses the seam.
+fn wedge(head: &Head, number: usize) -> [Vec2; 3] {
+    if let Some(wedge) = head.skin.wedges.get(number) {
+        return *wedge;
+    }
+    let mesh = &head.skin.mesh;
+    let uvs = mesh.triangles[number].map(|i| mesh.uvs[i as usize]);
+    let high = uvs[0].x.max(uvs[1].x).max(uvs[2].x);
+    uvs.map(|uv| if high - uv.x > 0.5 { uv + Vec2::X } else { uv })
+}
+
+/// Calls `paint(index, position, vermilion)` for each cell under a triangle, grown a little: no cracks.
+fn draw(
+    corner: &[(Vec2, Vec3, f32); 3],
+    (width, height): (usize, usize),
+    mut paint: impl FnMut(usize, Vec3, f32),
+) {
+    let [a, b, c] = corner;
+    let low = a.0.min(b.0).min(c.0);
+    let high = a.0.max(b.0).max(c.0);
+    let area = (b.0 - a.0).perp_dot(c.0 - a.0);
+    if area.abs() < 1e-6 || high.x < 0.0 {
+        return;
+    }
+    let x0 = (low.x - 1.0).ceil().max(0.0) as usize;
+    let y0 = (low.y - 1.0).ceil().max(0.0) as usize;
+    let x1 = (high.x + 1.0).floor().clamp(0.0, width as f32) as usize;
+    let y1 = (high.y + 1.0).floor().clamp(0.0, height as f32) as usize;
+    for y in y0..y1 {
+        for x in x0..x1 {
+            let p = vec2(x as f32 + 0.5, y as f32 + 0.5);
+            let wb = (p - a.0).perp_dot(c.0 - a.0) / area;
+            let wc = (b.0 - a.0).perp_dot(p - a.0) / area;
+            let wa = 1.0 - wb - wc;
+            if wa < -0.3 || wb < -0.3 || wc < -0.3 {
+                continue;
+            }
+            let place = a.1 * wa + b.1 * wb + c.1 * wc;
+            paint(y * width + x, place, a.2 * wa + b.2 * wb + c.2 * wc);
+        }
     }
 }

@@ -1,20 +1,18 @@
-//! The maps of skin, eyes and hair, painted by program from a head's feature lines (HEADSHOP 4.4).
+//! The maps of skin, eyes and hair (HEADSHOP 4.4). The skin's colour is the head's own; the others
+//! are painted by program, those of the skin by place on the face.
 //!
-//! The skin's maps cover the part of the chart that is seen: the face and both ears, 223 degrees of
-//! longitude, from 150 mm to -106 mm. So 2048 x 1024 texels give 6 texels a mm across the face, where
-//! the whole cylinder would give under 4; behind the ears there is hair, and at the edges the paint
-//! fades to plain skin, which the sampler extends.
+//! The skin's detail map covers the part of the chart that shows grain: 223 degrees of longitude, from
+//! 150 mm to -106 mm. So 2048 x 1024 texels give 6 texels a mm across the face, where the whole cylinder
+//! would give under 4; at the edges the grain fades to plain skin, which the sampler extends.
 //!
 //! Colours are kept as the square root of linear light: the shader squares them, which costs less in
 //! software rendering than decoding sRGB. Nothing here knows of wgpu.
 
-pub(crate) mod brows;
 pub(crate) mod eye;
 pub(crate) mod hair;
 pub(crate) mod hairline;
 pub(crate) mod image;
 pub(crate) mod landmarks;
-pub(crate) mod lines;
 pub(crate) mod noise;
 pub(crate) mod skin;
 pub(crate) mod strokes;
@@ -25,7 +23,7 @@ use mouthpiece_rig::Head;
 
 use crate::tier::Detail;
 
-/// Part of the chart that the skin's maps cover. Keep in step with shaders/skin.wgsl.
+/// Part of the chart that the skin's detail map covers. Keep in step with shaders/skin.wgsl.
 pub(crate) const WINDOW_MIN: Vec2 = vec2(0.19, 0.0);
 /// See [`WINDOW_MIN`].
 pub(crate) const WINDOW_MAX: Vec2 = vec2(0.81, 1.0);

@@ -27,6 +27,8 @@ pub(crate) enum Blend {
     Cover,
     /// Replaces what lies under it.
     Over,
+    /// Replaces what lies under it without fading along its length; the last value is its cover.
+    Strand,
 }
 
 impl<const N: usize> Field<N> {
@@ -55,7 +57,11 @@ impl<const N: usize> Field<N> {
             self.dab(
                 p,
                 stroke.half_width * taper,
-                stroke.strength.map(|s| s * fade),
+                if blend == Blend::Strand {
+                    stroke.strength
+                } else {
+                    stroke.strength.map(|s| s * fade)
+                },
                 blend,
             );
         }
@@ -81,7 +87,7 @@ impl<const N: usize> Field<N> {
                 for (value, strength) in value.iter_mut().zip(strength) {
                     match blend {
                         Blend::Cover => *value = value.max(cover * strength),
-                        Blend::Over => *value += (strength - *value) * cover,
+                        Blend::Over | Blend::Strand => *value += (strength - *value) * cover,
                     }
                 }
             }

@@ -34,7 +34,7 @@ fn shadow_of_four(place: vec3<f32>) -> f32 {
 }
 
 fn shadow_of_nine(place: vec3<f32>) -> f32 {
-    let d = 1.3 / f32(textureDimensions(shadow_map).x);
+    let d = 1.5 / f32(textureDimensions(shadow_map).x);
     var sum = 0.0;
     for (var i = -1; i <= 1; i++) {
         for (var j = -1; j <= 1; j++) {

@@ -8,12 +8,12 @@
 #include "light"
 
 @group(2) @binding(0) var map_sampler: sampler;
-// Colour as the square root of linear light; a: how much light shines through (ears, nose).
+// Colour as the square root of linear light, lips and brows in it; a: how much light shines through.
 @group(2) @binding(1) var colour_map: texture_2d<f32>;
-// Slopes of the surface across and up (0.5 is flat), gloss, unused.
+// Slopes of the surface across and up (0.5 is flat), gloss, what the grain leaves of the colour (0.5 is all).
 @group(2) @binding(2) var detail_map: texture_2d<f32>;
 
-// Part of the chart that the maps cover: u from .x to .y, v from .z to .w. Keep in step with maps/mod.rs.
+// Part of the chart that the detail map covers: u from .x to .y, v from .z to .w. Keep in step with maps/mod.rs.
 const WINDOW: vec4<f32> = vec4(0.19, 0.81, 0.0, 1.0);
 // Colour of skin on the whole, linear: for light that bounces in folds.
 const SKIN: vec3<f32> = vec3(0.56, 0.32, 0.23);
@@ -31,7 +31,7 @@ struct SkinFragment {
     @builtin(position) clip: vec4<f32>,
     // Normal; light that is only added: lamps but the key, and the room, mirrored.
     @location(0) normal: vec4<f32>,
-    // Place in the maps; place in the shadow map.
+    // Place in the colour map; place in the shadow map.
     @location(1) places: vec4<f32>,
     // Light but the key's that the skin's colour multiplies; depth in the shadow map.
     @location(2) soft: vec4<f32>,
@@ -70,7 +70,7 @@ fn skin_vertex(in: SkinVertex) -> SkinFragment {
     let around = ambient_from(n);
 
     // The room and the lamps mirrored in the skin's oil, and the down of the cheek at grazing sight.
-    let rim = gloss(n, v, frame.rim_dir.xyz, 0.5) * (1.0 + 6.0 * edge);
+    let rim = gloss(n, v, frame.rim_dir.xyz, 0.5) * (1.0 + 6.0 * edge) * occlusion * occlusion;
     let fill = gloss(n, v, frame.fill_dir.xyz, 0.5);
     let mirrored = (frame.fill_colour.rgb * fill + frame.rim_colour.rgb * rim) * 0.022
         + ambient_from(reflect(-v, n)) * ((0.018 + 0.08 * edge) * occlusion * occlusion);
@@ -82,7 +82,7 @@ fn skin_vertex(in: SkinVertex) -> SkinFragment {
     var out: SkinFragment;
     out.clip = frame.clip_from_world * vec4(world, 1.0);
     out.normal = vec4(n, dot(mirrored, vec3(0.3333)));
-    out.places = vec4((in.uv - WINDOW.xz) / (WINDOW.yw - WINDOW.xz), shadow.xy);
+    out.places = vec4(in.uv, shadow.xy);
     out.soft = vec4(soft, shadow.z);
     out.shares = vec3(in.shares.y, in.shares.z, occlusion);
     return out;
@@ -91,7 +91,7 @@ fn skin_vertex(in: SkinVertex) -> SkinFragment {
 @fragment
 fn skin(in: SkinFragment) -> @location(0) vec4<f32> {
     let texel = textureSample(colour_map, map_sampler, in.places.xy);
-    let detail = textureSample(detail_map, map_sampler, in.places.xy);
+    let detail = textureSample(detail_map, map_sampler, (in.places.xy - WINDOW.xz) * (1.0 / (WINDOW.yw - WINDOW.xz)));
     let smooth_n = in.normal.xyz;
 
     // Bump: slopes lie across and up the chart, which the face's normal is near enough square to.
@@ -100,13 +100,10 @@ fn skin(in: SkinFragment) -> @location(0) vec4<f32> {
     let across = vec3(smooth_n.z, 0.0, -smooth_n.x);
     let n = normalize(smooth_n - across * slope.x - up * slope.y);
 
-    // Lips: the painted creases also break up the border of the red.
+    // Lips: smoother than skin; their creases also break up the border.
     let red = eased(in.shares.x * (1.0 + 0.35 * slope.x) * 2.13 - 0.32);
     let wet = in.shares.y;
-    var albedo = texel.rgb * texel.rgb;
-    let tone = dot(albedo, vec3(0.78, 1.3, 0.52));
-    let lip = mix(vec3(0.43, 0.125, 0.110), vec3(0.29, 0.065, 0.06), wet) * tone;
-    albedo = mix(albedo, lip, red * 0.86);
+    let albedo = texel.rgb * texel.rgb * (2.0 * detail.w);
     let oil = mix(detail.z, 0.62, red);
     let roughness = mix(mix(0.62, 0.49, oil), mix(0.40, 0.22, wet), max(red * 0.8, wet));
 

@@ -127,6 +127,6 @@ impl Hairline {
 /// How far the edge of hair strays from its line at a place of the chart (mm): what grows there and what is painted
 /// there stray together.
 pub(crate) fn waver_mm(chart: Vec2) -> f32 {
-    6.0 * (value(chart.x * 0.10, chart.y * 0.10, 5) - 0.5)
-        + 3.5 * (value(chart.x * 0.33, chart.y * 0.33, 6) - 0.5)
+    4.0 * (value(chart.x * 0.10, chart.y * 0.10, 5) - 0.5)
+        + 3.0 * (value(chart.x * 0.33, chart.y * 0.33, 6) - 0.5)
 }

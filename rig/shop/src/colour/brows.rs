@@ -34,7 +34,7 @@ fn brow(field: &mut Field, lower: &Line, upper: &Line, seed: u64) {
         let along = dice.roll() * 0.97;
         // Ragged borders: dense in the middle, some strays.
         let stray = if dice.roll() < 0.07 { 1.0 } else { 0.72 };
-        let across = 0.46 + 0.62 * stray * dice.spread();
+        let across = 0.47 + 0.66 * stray * dice.spread();
         // The head fades in, the tail out.
         let dense = ramp(-0.02, 0.22, along) * ramp(1.04, 0.66, along);
         if dice.roll() > 0.22 + 0.78 * dense {
@@ -69,7 +69,7 @@ fn brow(field: &mut Field, lower: &Line, upper: &Line, seed: u64) {
         field.draw(&Stroke {
             points: [middle - ahead * 2.0, middle, middle + ahead * 2.5].map(|p| p / CHART_MM),
             width: 1.5 / CHART_MM.x,
-            strength: 0.34 * dense,
+            strength: 0.42 * dense,
         });
     }
 }

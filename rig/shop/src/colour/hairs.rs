@@ -8,7 +8,7 @@ use crate::lines::{CHART_MM, Hairline, waver_mm};
 use crate::noise::{Dice, ramp};
 
 /// Hairs a mm of the line.
-const HAIRS_PER_MM: f32 = 11.0;
+const HAIRS_PER_MM: f32 = 15.0;
 
 pub(super) fn paint(hairline: Option<&Hairline>, width: usize, height: usize) -> Cover {
     let mut field = Field::new(width, height);

@@ -9,8 +9,9 @@ use crate::noise::{fractal, hash, ramp, unit, value};
 
 /// Skin where nothing colours it.
 const BASE: Vec3 = vec3(0.802, 0.606, 0.520);
-/// Hair of brows and scalp.
-const HAIR: Vec3 = vec3(0.215, 0.150, 0.112);
+/// Hair of brows and scalp, and the scalp between the roots.
+const HAIR: Vec3 = vec3(0.185, 0.128, 0.096);
+const SCALP: Vec3 = vec3(0.390, 0.285, 0.228);
 /// Lower lip, upper lip, and where they touch.
 const LIP: Vec3 = vec3(0.700, 0.425, 0.395);
 const UPPER_LIP: Vec3 = vec3(0.655, 0.392, 0.365);
@@ -102,7 +103,7 @@ impl Face {
         // Between the roots the scalp shows less and less.
         let chart = spot.chart * CHART_MM;
         let depth = depth - waver_mm(chart);
-        c = c.lerp(HAIR * 1.12, 0.88 * ramp(-1.0, 11.0, depth).powf(1.3));
+        c = c.lerp(SCALP, 0.92 * ramp(-3.5, 8.0, depth));
         c = c.lerp(HAIR, hair.clamp(0.0, 1.0));
         c.to_array()
             .map(|v| (v.clamp(0.0, 1.0) * 255.0 + 0.5) as u8)

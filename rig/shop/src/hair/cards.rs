@@ -38,15 +38,15 @@ struct Kind {
 const KINDS: [Kind; 5] = [
     // Thin locks that fall over the edge of the forehead.
     Kind {
-        tries: 700,
-        depth_mm: 1.0,
-        width_mm: [2.5, 5.5],
+        tries: 3200,
+        depth_mm: 0.0,
+        width_mm: [2.5, 6.0],
         length: [0.40, 0.72],
         layer: [0.7, 1.0],
         lift: [0.0, 0.05],
         fall: 0.75,
         stray: 0.7,
-        columns: (DENSE, LOOSE),
+        columns: (DENSE + 1, LOOSE - 1),
         steps: 4,
         root_light: 0.75,
         seed: 70,
@@ -68,15 +68,15 @@ const KINDS: [Kind; 5] = [
     },
     // Short hair along the hairline, rooted on both sides of it.
     Kind {
-        tries: 2000,
-        depth_mm: -1.2,
+        tries: 2800,
+        depth_mm: -2.5,
         width_mm: [3.5, 7.0],
         length: [0.5, 0.85],
         layer: [0.8, 1.2],
         lift: [0.0, 0.10],
         fall: 0.0,
         stray: 0.6,
-        columns: (DENSE, LOOSE),
+        columns: (DENSE + 1, LOOSE - 1),
         steps: 3,
         root_light: 0.8,
         seed: 72,
@@ -84,22 +84,22 @@ const KINDS: [Kind; 5] = [
     // Loose locks over the dense layer.
     Kind {
         tries: 600,
-        depth_mm: 3.0,
+        depth_mm: 5.0,
         width_mm: [5.0, 9.0],
         length: [0.75, 1.15],
         layer: [0.9, 1.1],
         lift: [0.0, 0.06],
         fall: 0.0,
         stray: 0.3,
-        columns: (DENSE, LOOSE),
+        columns: (DENSE, 1),
         steps: 5,
         root_light: 0.7,
         seed: 73,
     },
     // The dense layer.
     Kind {
-        tries: 1150,
-        depth_mm: 2.5,
+        tries: 1000,
+        depth_mm: 3.0,
         width_mm: [11.0, 16.0],
         length: [0.75, 1.05],
         layer: [0.68, 0.95],
@@ -116,7 +116,7 @@ const KINDS: [Kind; 5] = [
 /// Longest step of a card, mm: the head curves away under longer ones.
 const STEP_MM: f32 = 10.0;
 /// How deep within the hairline the short hair of its edge grows.
-const EDGE_MM: f32 = 7.0;
+const EDGE_MM: f32 = 8.0;
 /// Number of the kind that does.
 const EDGE: usize = 2;
 /// How deep those that fall over the forehead grow.
@@ -126,8 +126,6 @@ const FRINGE_MM: f32 = 12.0;
 pub(super) fn grow(mesh: &mut Mesh, scalp: &Scalp) {
     for (number, kind) in KINDS.iter().enumerate() {
         let mut dice = Dice::new(kind.seed);
-            eprintln!("{number} {}", mesh.triangles.len());
-        }
         for i in 0..kind.tries {
             // Points on a sphere by the golden angle, shaken a little.
             let y = 1.0 - 2.0 * (i as f32 + dice.roll()) / kind.tries as f32;
@@ -192,7 +190,8 @@ fn card(mesh: &mut Mesh, scalp: &Scalp, kind: &Kind, root: Vec3, depth: f32, dic
         // From the skin up to its layer, shingled: tips lie over the roots that follow.
         let stand = 0.30 + 0.70 * ramp(0.0, 0.45, v);
         // Where it lies over bare skin it still stands off it a little.
-        let height = (style::height_mm(foot, scalp) * layer * stand).max(2.2 * v) + lift * v * v + 0.3;
+        let height =
+            (style::height_mm(foot, scalp) * layer * stand).max(2.2 * v) + lift * v * v + 0.3;
         let place = foot + normal * height;
         let fan = 1.0 - 0.25 * v;
         for (side, u) in [(-1.0, 0.0), (1.0, 1.0)] {

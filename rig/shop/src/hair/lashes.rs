@@ -21,16 +21,16 @@ struct Row {
 
 const ROWS: [Row; 2] = [
     Row {
-        count: 60,
+        count: 64,
         length_mm: [4.5, 7.5],
-        width_mm: 0.42,
+        width_mm: 0.38,
         rise: [-0.25, 0.95],
         upper: true,
     },
     Row {
-        count: 34,
-        length_mm: [2.2, 3.6],
-        width_mm: 0.20,
+        count: 26,
+        length_mm: [1.8, 3.2],
+        width_mm: 0.13,
         rise: [-0.45, -0.55],
         upper: false,
     },

@@ -7,7 +7,8 @@
 //!
 //! # What a vertex says
 //! `uv`: v runs from root (0) to tip (1) of the strands, so that `dP/dv` is their direction; u picks a column of
-//! the painted strands: [`COLUMNS`] of equal width, the first [`DENSE`] dense, then [`LOOSE`] loose locks, the rest single hairs. The cap
+//! the painted strands: [`COLUMNS`] of equal width, the first [`DENSE`] dense, then [`LOOSE`] loose
+//! locks of which only the first is thick, the rest single hairs. The cap
 //! has v below 0. `occlusion`: how much light reaches so deep.
 
 mod cap;
