@@ -1,5 +1,6 @@
 //! Why a picture could not be drawn, in a sentence a user can act on.
 
+use mouthpiece_rig::SubdivisionError;
 use thiserror::Error;
 
 use crate::shader::ShaderError;
@@ -32,6 +33,9 @@ pub enum RenderError {
     /// A shader file is broken.
     #[error(transparent)]
     Shader(#[from] ShaderError),
+    /// The head's skin cannot be drawn.
+    #[error(transparent)]
+    Skin(#[from] SubdivisionError),
     /// The driver does not take our shaders or buffers.
     #[error(
         "the graphics driver refused to draw this: {0}; update the driver or choose another adapter with WGPU_ADAPTER_NAME"

@@ -34,8 +34,8 @@ pub(crate) struct Open {
 }
 
 impl Openings {
-    pub(crate) fn of(head: &Head) -> Self {
-        let positions = &head.skin.mesh.positions;
+    /// Those of `head`, whose skin is drawn at `points` at rest.
+    pub(crate) fn of(head: &Head, points: &[Vec3]) -> Self {
         let lips = head
             .lips
             .upper
@@ -60,7 +60,7 @@ impl Openings {
             open_at_rest: [1.0; 2],
             mouth_at_rest: super::maps::landmarks::Landmarks::of(head).mouth,
         };
-        let rest = openings.measure(positions);
+        let rest = openings.measure(points);
         for (open, pair) in openings
             .open_at_rest
             .iter_mut()

@@ -5,11 +5,12 @@ use mouthpiece_rig::{Head, KeyFrame, Material, Skin};
 use crate::bindings::{self, MapGroups};
 use crate::error::RenderError;
 use crate::frame;
-use crate::geometry::{PartGeometry, SkinGeometry};
+use crate::geometry::PartGeometry;
 use crate::gpu::Gpu;
 use crate::gpu_data::{Frame, SkinMoving};
 use crate::openings::Openings;
 use crate::pipelines::{Layouts, Pipelines};
+use crate::surface::SkinGeometry;
 use crate::targets::Targets;
 use crate::tier::{Detail, Tier};
 use crate::upload;
@@ -55,7 +56,7 @@ impl Renderer {
     /// Puts `head` on the card, for targets of `format` (sRGB or not: the picture is the same).
     ///
     /// # Errors
-    /// When a shader file is broken.
+    /// When a shader file is broken or the head's numbers do not fit together.
     pub fn new(
         gpu: &Gpu,
         head: &Head,
@@ -68,7 +69,7 @@ impl Renderer {
         let layouts = Layouts::new(device);
         let pipelines = Pipelines::new(gpu, &layouts, format, samples, &detail)?;
 
-        let skin = SkinGeometry::of(head);
+        let skin = SkinGeometry::of(head, detail.smoothness)?;
         let vertex = wgpu::BufferUsages::VERTEX;
         let skin_moving = upload::buffer(
             gpu,
@@ -119,7 +120,7 @@ impl Renderer {
         Ok(Self {
             pose,
             extent: Extent::of(head),
-            openings: Openings::of(head),
+            openings: Openings::of(head, skin.points()),
             detail,
             format,
             samples,
@@ -197,7 +198,7 @@ impl Renderer {
             0,
             bytemuck::cast_slice::<SkinMoving, u8>(&self.skin.moving),
         );
-        let open = self.openings.measure(&key_frame.skin);
+        let open = self.openings.measure(self.skin.points());
         let frame = frame::data(&self.pose, &self.extent, &open, key_frame, view, size);
         gpu.queue()
             .write_buffer(&self.frame, 0, bytemuck::bytes_of(&frame));

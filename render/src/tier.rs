@@ -34,9 +34,20 @@ impl FromStr for Tier {
     }
 }
 
+/// How closely triangles follow the skin's surface.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Smoothness {
+    /// How often a side of the head's own triangles may be halved.
+    pub(crate) levels: usize,
+    /// A side is halved where the surface bows from it by more than this, mm; 0: always.
+    pub(crate) bow_mm: f32,
+}
+
 /// What a tier means in numbers.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Detail {
+    /// Triangles of the skin.
+    pub(crate) smoothness: Smoothness,
     /// Samples a pixel, where offered.
     pub(crate) samples: u32,
     /// Width of the face maps in texels; they are half as high.
@@ -70,6 +81,10 @@ impl Tier {
     pub(crate) const fn detail(self) -> Detail {
         match self {
             Self::Low => Detail {
+                smoothness: Smoothness {
+                    levels: 0,
+                    bow_mm: 0.0,
+                },
                 samples: 1,
                 map_width: 1024,
                 eye_map: 256,
@@ -79,6 +94,10 @@ impl Tier {
                 anisotropy: 1,
             },
             Self::Medium => Detail {
+                smoothness: Smoothness {
+                    levels: 1,
+                    bow_mm: 0.1,
+                },
                 samples: 4,
                 map_width: 2048,
                 eye_map: 512,
@@ -88,6 +107,10 @@ impl Tier {
                 anisotropy: 1,
             },
             Self::High => Detail {
+                smoothness: Smoothness {
+                    levels: 2,
+                    bow_mm: 0.12,
+                },
                 samples: 4,
                 map_width: 4096,
                 eye_map: 1024,
