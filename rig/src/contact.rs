@@ -7,11 +7,12 @@
 use glam::{Affine3A, Vec3, Vec3A, vec3};
 
 use crate::head::LIP_LEVELS;
+use crate::head::lip_level::CREST;
 use crate::tissue::Tissue;
 use crate::{Eye, Head, Placement};
 
 /// Levels of a lip's column that can touch the other lip.
-const TOUCHING: std::ops::RangeInclusive<usize> = 1..=6;
+const TOUCHING: std::ops::RangeInclusive<usize> = CREST..=LIP_LEVELS - 1;
 /// Share of an overlap that one pass removes; two passes run.
 const PASS_SHARE: f32 = 0.5;
 /// Skin keeps this far from the teeth, and lids from the eyeballs, mm.
@@ -94,7 +95,7 @@ impl Contact {
     fn teeth(&self, skin: &mut Bodies<'_>, mandible: &Affine3A) {
         let unjawed = mandible.inverse();
         for (upper, lower) in &self.columns {
-            for &i in upper[2..].iter().chain(&lower[2..]) {
+            for &i in upper[CREST + 1..].iter().chain(&lower[CREST + 1..]) {
                 let i = i as usize;
                 let p = skin.position[i];
                 // The arches are described where they stand on the reference head.

@@ -133,13 +133,25 @@ pub struct Skin {
     pub wet: Vec<f32>,
 }
 
-/// Levels of a lip's column, from the vermilion border over crest, brim and contact line to the
-/// inner side: see [`Lips`].
-pub const LIP_LEVELS: usize = 7;
+/// Levels of a lip's column, from the vermilion border over the red to the contact line and the inner
+/// side: see [`Lips`] and [`lip_level`].
+pub const LIP_LEVELS: usize = 9;
+
+/// Levels of a lip's column that have a name.
+pub mod lip_level {
+    /// The vermilion border.
+    pub const BORDER: usize = 0;
+    /// The most forward part of the red.
+    pub const CREST: usize = 1;
+    /// Where the lips touch at rest.
+    pub const CONTACT: usize = 5;
+    /// The first level of the inner side, which ends at the column's last.
+    pub const INNER: usize = 6;
+}
 
 /// The skin vertices of both lips as columns from the subject's right corner to the left one; column
-/// `i` of the upper lip stands over column `i` of the lower. Level 0 is the vermilion border, 1 the
-/// crest, 2 the brim, 3 the contact line, 4 to 6 the inner side. At the corners both share vertices.
+/// `i` of the upper lip stands over column `i` of the lower, levels as in [`lip_level`]. At the
+/// corners both share vertices.
 #[derive(Clone, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Lips {

@@ -4,6 +4,7 @@ use glam::Vec3;
 
 use crate::contact::upper_edge;
 use crate::head::LIP_LEVELS;
+use crate::head::lip_level::{BORDER, CONTACT, CREST, INNER};
 use crate::{Control, Head, KeyFrame};
 
 /// What a mouth does, measured on the skin as it is drawn: on the limit of its subdivision.
@@ -38,8 +39,11 @@ pub fn measure(head: &Head, frame: &KeyFrame) -> Measures {
     let (Some(first), Some(last)) = (upper.first(), upper.last()) else {
         return Measures::default();
     };
-    let (right, left) = (skin[first[0] as usize], skin[last[0] as usize]);
-    let slit = (skin[first[3] as usize].x, skin[last[3] as usize].x);
+    let (right, left) = (skin[first[BORDER] as usize], skin[last[BORDER] as usize]);
+    let slit = (
+        skin[first[CONTACT] as usize].x,
+        skin[last[CONTACT] as usize].x,
+    );
 
     let lowest = |x: f32| edge_at(skin, upper, x, f32::min);
     let highest = |x: f32| edge_at(skin, lower, x, f32::max);
@@ -54,16 +58,16 @@ pub fn measure(head: &Head, frame: &KeyFrame) -> Measures {
     let middle = upper.len() / 2;
     let rest = lips.at(&head.skin.mesh.positions);
     let forward = |columns: &[[u32; LIP_LEVELS]]| {
-        let v = columns[middle][1] as usize;
+        let v = columns[middle][CREST] as usize;
         skin[v].z - rest[v].z
     };
     // The jaw carries the lower lip back as it opens: that is no drawing in of the lip.
     let jaw = head.mandible(frame.state[Control::Jaw]);
-    let crest = rest[lower[middle][1] as usize];
+    let crest = rest[lower[middle][CREST] as usize];
     let carried = jaw.transform_point3(crest).z - crest.z;
     let lip_teeth_mm = lower
         .iter()
-        .flat_map(|column| &column[1..=4])
+        .flat_map(|column| &column[CREST..=INNER])
         .map(|&v| skin[v as usize])
         .filter(|p| head.bite.reference(*p).x.abs() < FRONT_TEETH_MM)
         .map(|p| p.distance(head.bite.place(upper_edge(head.bite.reference(p).x))))
@@ -85,9 +89,9 @@ fn edge_at(
     extreme: fn(f32, f32) -> f32,
 ) -> f32 {
     let of = |column: &[u32; LIP_LEVELS]| {
-        let points = column[1..].iter().map(|&v| skin[v as usize]);
+        let points = column[CREST..].iter().map(|&v| skin[v as usize]);
         let height = points.clone().map(|p| p.y).reduce(extreme).unwrap_or(0.0);
-        (skin[column[3] as usize].x, height)
+        (skin[column[CONTACT] as usize].x, height)
     };
     for w in columns.windows(2) {
         let ((xa, ya), (xb, yb)) = (of(&w[0]), of(&w[1]));

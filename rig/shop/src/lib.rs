@@ -7,6 +7,7 @@ pub mod fit;
 pub mod hair;
 pub mod landmarks;
 pub mod mesh;
+pub mod sculpt;
 pub mod warp;
 
 mod lines;

@@ -23,6 +23,9 @@ use thiserror::Error;
 use crate::{Calibration, CalibrationError, Eye, Feature, Head, Placement};
 use surface::{Surface, chart_of, uv_of};
 
+/// Levels of a lip's column in this template.
+const LEVELS: usize = 7;
+
 /// What can be wrong with the data that the crate carries; none of it is a user's doing.
 #[derive(Debug, Error)]
 pub enum ReferenceError {
@@ -82,8 +85,7 @@ impl Head {
             calibration: Calibration::reference()?,
             colour: None,
         };
-        head.fibres = crate::muscle::fibres(|x, y| surface.seen_from_front(x, y))
-            .map_err(ReferenceError::Muscles)?;
+        head.fibres = fibres()?;
         crate::occlusion::bake(&mut head);
         Ok(head)
     }
@@ -92,7 +94,14 @@ impl Head {
 /// The reference head's fibres, for heads without muscles painted on their skin.
 pub(crate) fn fibres() -> Result<Vec<crate::Fibre>, ReferenceError> {
     let surface = Surface::load()?;
-    crate::muscle::fibres(|x, y| surface.seen_from_front(x, y)).map_err(ReferenceError::Muscles)
+    let round = |longitude: f32, y: f32| {
+        surface.point(glam::vec2(
+            longitude * surface::BACK / std::f32::consts::PI,
+            y,
+        ))
+    };
+    crate::muscle::fibres(|x, y| surface.seen_from_front(x, y), round)
+        .map_err(ReferenceError::Muscles)
 }
 
 /// The lines that the colour map is painted by, both sides.

@@ -3,10 +3,10 @@
 
 use glam::{Vec2, Vec3, vec2, vec3};
 
+use super::LEVELS as LIP_LEVELS;
 use super::polyline::at_x;
 use super::shapes;
 use super::surface::{Surface, chart_of};
-use crate::head::LIP_LEVELS;
 use crate::{Body, Material, Part};
 
 /// Columns from the mid line to the corner of the mouth, both included.

@@ -3,11 +3,12 @@
 
 use glam::{Vec2, Vec3, vec3};
 
+use super::LEVELS as LIP_LEVELS;
 use super::eyes::{Eyes, LOOP};
 use super::layout::{self, Line};
 use super::surface::{BACK, Surface, chart_of, uv_of};
 use super::{ReferenceError, crown, mouth, polyline, shapes};
-use crate::head::{LIP_LEVELS, normals};
+use crate::head::normals;
 use crate::{Lid, Lips, Mesh, Skin};
 
 /// A vertex of the half template.
@@ -347,7 +348,7 @@ fn assemble(
             (b - a).cross(c - a).length() > 1e-4
         })
         .collect();
-    let columns = |rows: &LipRows| -> Vec<[u32; LIP_LEVELS]> {
+    let columns = |rows: &LipRows| -> Vec<[u32; crate::LIP_LEVELS]> {
         let right = rows
             .iter()
             .skip(1)
@@ -355,6 +356,7 @@ fn assemble(
             .map(|r| r.map(|i| mirror[i] as u32));
         right
             .chain(rows.iter().map(|r| r.map(|i| i as u32)))
+            .map(|r| [0, 1, 1, 2, 2, 3, 4, 5, 6].map(|level| r[level]))
             .collect()
     };
     let lips = Lips {
@@ -403,8 +405,12 @@ fn assemble(
         .map(|t| across_seam(t.map(uv)))
         .collect();
     for columns in [&lips.upper, &lips.lower] {
-        skin.creases
-            .extend(columns.windows(2).map(|w| [w[0][3], w[1][3]]));
+        skin.creases.extend(columns.windows(2).map(|w| {
+            [
+                w[0][crate::lip_level::CONTACT],
+                w[1][crate::lip_level::CONTACT],
+            ]
+        }));
     }
     (skin, lips, lids)
 }
