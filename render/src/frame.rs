@@ -54,6 +54,7 @@ pub(crate) fn data(
             .eyes
             .map(|eye| eye.centre.extend(eye.radius).to_array()),
         lids: open.lids.map(|lid| lid.to_array()),
+        lids_at_rest: open.lids_at_rest.map(|lid| lid.to_array()),
         backdrop: [
             middle.extend(width / height).to_array(),
             corner.extend(0.0).to_array(),

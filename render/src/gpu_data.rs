@@ -25,6 +25,7 @@ pub(crate) struct Frame {
     pub(crate) mouth_height: [f32; 4],
     pub(crate) eyeballs: [[f32; 4]; 2],
     pub(crate) lids: [[f32; 4]; 4],
+    pub(crate) lids_at_rest: [[f32; 4]; 4],
     pub(crate) backdrop: [[f32; 4]; 2],
     pub(crate) picture: [f32; 4],
 }

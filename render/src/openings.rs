@@ -19,6 +19,7 @@ pub(crate) struct Openings {
     radius: f32,
     /// Height of the open eye at rest over the ball's radius, left and right.
     open_at_rest: [f32; 2],
+    lids_at_rest: [Vec4; 4],
     mouth_at_rest: Vec3,
 }
 
@@ -31,6 +32,8 @@ pub(crate) struct Open {
     pub(crate) mouth_half_height: f32,
     /// Lid margins as parabolas over the ball; see shaders/frame.wgsl.
     pub(crate) lids: [Vec4; 4],
+    /// The same at rest.
+    pub(crate) lids_at_rest: [Vec4; 4],
 }
 
 impl Openings {
@@ -58,9 +61,11 @@ impl Openings {
             eyes,
             radius,
             open_at_rest: [1.0; 2],
+            lids_at_rest: [Vec4::ZERO; 4],
             mouth_at_rest: super::maps::landmarks::Landmarks::of(head).mouth,
         };
         let rest = openings.measure(points);
+        openings.lids_at_rest = rest.lids;
         for (open, pair) in openings
             .open_at_rest
             .iter_mut()
@@ -82,6 +87,7 @@ impl Openings {
             mouth,
             mouth_half_height,
             lids,
+            lids_at_rest: self.lids_at_rest,
         }
     }
 

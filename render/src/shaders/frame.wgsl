@@ -31,6 +31,8 @@ struct Frame {
     // Lid margins over the ball in units of its radius: y = x + y*X + z*X^2. Left upper, left lower,
     // right upper, right lower; w of the upper ones: how far the lids are open, 0..1.
     lids: array<vec4<f32>, 4>,
+    // The same of the head at rest.
+    lids_at_rest: array<vec4<f32>, 4>,
     // Backdrop in the middle and in the corners, sRGB; w of the first: width over height.
     backdrop: array<vec4<f32>, 2>,
     // Size of the picture in pixels, share of its height that the flash square takes, unused.
