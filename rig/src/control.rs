@@ -1,12 +1,15 @@
 //! What the head can be told to do: one number per muscle, jaw, tongue, lid, gaze and head angle.
 //!
-//! The twelve muscles of the lower face are HABER 4.2's number; the paper names none of them, so
-//! the choice is by anatomy (Terminologia Anatomica): the two halves of the orbicularis oris and
-//! the ten muscles that insert into it or into the chin. Paired muscles act together.
+//! The first twelve muscles, of the lower face, are HABER 4.2's number; the paper names none of them,
+//! so the choice is by anatomy (Terminologia Anatomica): the two halves of the orbicularis oris and
+//! the ten muscles that insert into it or into the chin. The others complete HEADSHOP 3's number, 24
+//! (the orbicularis oculi is one muscle in two parts, so that there are 25): those that move brows,
+//! lids and nose, the sheet of the neck and the two of the jaw that show under the skin. Paired
+//! muscles act together.
 
 use serde::{Deserialize, Serialize};
 
-/// A muscle of the lower face; paired ones stand for their left and right belly.
+/// A muscle of the face; paired ones stand for their left and right belly.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 #[repr(usize)]
@@ -24,11 +27,24 @@ pub enum Muscle {
     DepressorAnguliOris,
     DepressorLabiiInferioris,
     Mentalis,
+    FrontalisInner,
+    FrontalisOuter,
+    CorrugatorSupercilii,
+    Procerus,
+    DepressorSupercilii,
+    OrbicularisOculiOrbital,
+    OrbicularisOculiPalpebral,
+    Nasalis,
+    DilatorNaris,
+    DepressorSeptiNasi,
+    Platysma,
+    Masseter,
+    Temporalis,
 }
 
 impl Muscle {
     /// How many there are.
-    pub const COUNT: usize = 12;
+    pub const COUNT: usize = 25;
 
     /// All of them, in the order of their numbers.
     pub const ALL: [Self; Self::COUNT] = [
@@ -44,13 +60,26 @@ impl Muscle {
         Self::DepressorAnguliOris,
         Self::DepressorLabiiInferioris,
         Self::Mentalis,
+        Self::FrontalisInner,
+        Self::FrontalisOuter,
+        Self::CorrugatorSupercilii,
+        Self::Procerus,
+        Self::DepressorSupercilii,
+        Self::OrbicularisOculiOrbital,
+        Self::OrbicularisOculiPalpebral,
+        Self::Nasalis,
+        Self::DilatorNaris,
+        Self::DepressorSeptiNasi,
+        Self::Platysma,
+        Self::Masseter,
+        Self::Temporalis,
     ];
 }
 
 /// Makes an enum of controls together with its names and bounds, so that the three cannot drift.
 macro_rules! controls {
     ($($(#[$doc:meta])* $variant:ident = $name:literal in $min:literal ..= $max:literal;)*) => {
-        /// One thing the head can be told to do. The first twelve are the contractions of
+        /// One thing the head can be told to do. The first are the contractions of
         /// [`Muscle::ALL`], in that order.
         #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
         #[repr(usize)]
@@ -102,6 +131,32 @@ controls! {
     DepressorLabiiInferioris = "depressor_labii_inferioris" in 0.0 ..= 1.0;
     /// Contraction.
     Mentalis = "mentalis" in 0.0 ..= 1.0;
+    /// Contraction.
+    FrontalisInner = "frontalis_inner" in 0.0 ..= 1.0;
+    /// Contraction.
+    FrontalisOuter = "frontalis_outer" in 0.0 ..= 1.0;
+    /// Contraction.
+    CorrugatorSupercilii = "corrugator_supercilii" in 0.0 ..= 1.0;
+    /// Contraction.
+    Procerus = "procerus" in 0.0 ..= 1.0;
+    /// Contraction.
+    DepressorSupercilii = "depressor_supercilii" in 0.0 ..= 1.0;
+    /// Contraction.
+    OrbicularisOculiOrbital = "orbicularis_oculi_orbital" in 0.0 ..= 1.0;
+    /// Contraction; it closes the lids as gently as [`Self::LidL`] and [`Self::LidR`] do.
+    OrbicularisOculiPalpebral = "orbicularis_oculi_palpebral" in 0.0 ..= 1.0;
+    /// Contraction.
+    Nasalis = "nasalis" in 0.0 ..= 1.0;
+    /// Contraction.
+    DilatorNaris = "dilator_naris" in 0.0 ..= 1.0;
+    /// Contraction.
+    DepressorSeptiNasi = "depressor_septi_nasi" in 0.0 ..= 1.0;
+    /// Contraction.
+    Platysma = "platysma" in 0.0 ..= 1.0;
+    /// Contraction.
+    Masseter = "masseter" in 0.0 ..= 1.0;
+    /// Contraction.
+    Temporalis = "temporalis" in 0.0 ..= 1.0;
     /// Protrusion of the upper half of the orbicularis oris along its axis; below 0 is tucked in.
     ProtrusionSuperior = "protrusion_superior" in -1.0 ..= 1.0;
     /// Protrusion of the lower half.

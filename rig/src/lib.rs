@@ -47,11 +47,11 @@ pub use control::{Control, Controls, Muscle};
 pub use file::HeadError;
 pub use head::{
     Body, ColourMap, Eye, Feature, Head, LIP_LEVELS, Landmark, Layer, Lid, Lips, Material, Mesh,
-    Part, Placement, Skin, SurfacePoint, normals,
+    Part, Placement, Skin, SurfacePoint, lip_level, normals,
 };
 pub use key_frame::{KeyFrame, TICK_RATE};
 pub use measure::{Measures, measure};
-pub use muscle::{Contraction, Fibre, GridPoint, MuscleGrid};
+pub use muscle::{Axis, Contraction, Fibre, GridPoint, MuscleGrid, Space, rebuild};
 pub use quality::{EdgeLengths, Quality, edge_lengths};
 pub use reference::ReferenceError;
 pub use simulation::{STEP_TICKS, Simulation};

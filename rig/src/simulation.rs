@@ -272,6 +272,9 @@ impl Simulation {
             } else {
                 (&self.head.eyes[1], self.state[Control::LidR])
             };
+            // The orbicularis oculi's part in the lids closes what they have left open.
+            let muscle = self.state[Control::OrbicularisOculiPalpebral] * scale.min(1.0);
+            let closed = 1.0 - (1.0 - closed) * (1.0 - muscle);
             // The upper lid follows the gaze down and up.
             let follow = if lid.turn < 0.0 {
                 0.55 * lid.hold * (1.0 - closed)

@@ -9,6 +9,7 @@
 use glam::Vec3;
 
 use crate::head::LIP_LEVELS;
+use crate::head::lip_level::CONTACT;
 use crate::head::ramp;
 use crate::muscle::Contraction;
 use crate::{Head, Muscle};
@@ -18,12 +19,15 @@ pub(crate) const EDGE: f32 = 34_000.0;
 /// Of the spring to the bone where the skin lies thin on it, and where it lies on soft tissue.
 const BONE_THIN: f32 = 60_000.0;
 const BONE_SOFT: f32 = 1_500.0;
+/// What is left of that stiffness where the forehead's skin slides over the bone.
+const FOREHEAD: f32 = 0.12;
 /// Of a spring to a muscle fibre right beside the vertex.
 const FIBRE: f32 = 26_000.0;
 /// Of a lid's hold on its margin.
 const LID: f32 = 150_000.0;
-/// A fibre holds vertices within this distance, mm.
+/// A fibre holds vertices within this distance, mm; one of the thin sheets within the other.
 const FIBRE_REACH_MM: f32 = 13.0;
+const SHEET_REACH_MM: f32 = 19.0;
 /// A vertex is held by at most this many fibres of each muscle's side.
 const FIBRES_MAX: usize = 6;
 
@@ -122,10 +126,14 @@ impl Tissue {
         let sides = sides(head);
         // Springs to bone by what lies under that place of the reference head.
         let at = |i: usize| reference[vertices[i] as usize];
+        let mut lid_hold = vec![0.0_f32; rest.len()];
+        for lid in &head.lids {
+            lid_hold[lid.vertex as usize] = lid.hold;
+        }
         let attachments = (0..movable)
             .flat_map(|i| {
                 let vertex = vertices[i] as usize;
-                attach(head, i, rest[vertex], sides[vertex])
+                attach(head, i, rest[vertex], sides[vertex], lid_hold[vertex])
             })
             .collect();
         let lids = head
@@ -178,12 +186,11 @@ impl Tissue {
     }
 }
 
-/// Whether the skin there moves at all: the face from the lid crease to the throat. No muscle reaches
-/// the brows yet, nor the side of the head before the ear.
+/// Whether the skin there moves at all: the face from the hairline to the throat, back to the ears.
 fn moves(p: Vec3) -> bool {
     let ahead = p.z > 8.0 + 0.35 * (p.y + 30.0).abs().min(60.0);
-    let side = if p.y > -8.0 { 58.0 } else { 70.0 };
-    ahead && (-92.0..53.0).contains(&p.y) && p.x.abs() < side
+    let side = if p.y > 60.0 { 66.0 } else { 75.0 };
+    ahead && (-98.0..110.0).contains(&p.y) && p.x.abs() < side
 }
 
 /// Interleaves the bits of a place on a 4 mm grid, so that neighbours lie close in memory.
@@ -201,7 +208,7 @@ fn sides(head: &Head) -> Vec<Side> {
         .lips
         .upper
         .last()
-        .map_or(Vec3::ZERO, |c| rest[c[3] as usize]);
+        .map_or(Vec3::ZERO, |c| rest[c[CONTACT] as usize]);
     let mut sides: Vec<Side> = rest
         .iter()
         .map(|p| match (p.x.abs() < corner.x, p.y > slit_height(p.x)) {
@@ -249,8 +256,12 @@ fn bone_stiffness(p: Vec3, side: Side) -> f32 {
     let from_mouth = ((p.x / 1.25).powi(2) + (p.y + 36.0).powi(2)).sqrt();
     let near_mouth = 1.0 - ((from_mouth - 22.0) / 34.0).clamp(0.0, 1.0);
     let nose = (1.0 - (p.x.abs() - 9.0).max(0.0) / 10.0).clamp(0.0, 1.0)
-        * ((p.y + 16.0) / 14.0).clamp(0.0, 1.0);
-    let brow = ((p.y - 44.0) / 14.0).clamp(0.0, 1.0);
+        * ((p.y + 16.0) / 14.0).clamp(0.0, 1.0)
+        * (1.0 - 0.8 * ramp(38.0, 54.0, p.y));
+    // The scalp is fast to the bone at the hairline and on the temples; over the forehead and the
+    // brows it slides.
+    let brow = ramp(80.0, 106.0, p.y + 0.3 * (p.x.abs() - 30.0).max(0.0));
+    let slides = ramp(40.0, 50.0, p.y) * ramp(62.0, 50.0, p.x.abs()) * (1.0 - brow);
     let chin =
         (1.0 - (p.x.abs() / 30.0).powi(2)).clamp(0.0, 1.0) * ((-p.y - 52.0) / 10.0).clamp(0.0, 1.0);
     let thin = (nose.max(brow) + 0.35 * chin).min(1.0);
@@ -260,11 +271,12 @@ fn bone_stiffness(p: Vec3, side: Side) -> f32 {
         * ramp(20.0, 45.0, p.z)
         * (1.0 - chin);
     let lip = if side == Side::Neither { 1.0 } else { 0.75 };
-    (BONE_SOFT * lip) + (BONE_THIN - BONE_SOFT) * thin.max(far) * (1.0 - 0.85 * free)
+    let held = thin.max(far) * (1.0 - 0.85 * free);
+    (BONE_SOFT * lip) + (BONE_THIN - BONE_SOFT) * held * (1.0 - (1.0 - FOREHEAD) * slides)
 }
 
 /// The springs of one vertex to the fibres near it.
-fn attach(head: &Head, vertex: usize, p: Vec3, side: Side) -> Vec<Attachment> {
+fn attach(head: &Head, vertex: usize, p: Vec3, side: Side, lid: f32) -> Vec<Attachment> {
     let mut found: Vec<(f32, Attachment)> = Vec::new();
     for (f, fibre) in head.fibres.iter().enumerate() {
         let other_lip = match fibre.muscle {
@@ -286,15 +298,33 @@ fn attach(head: &Head, vertex: usize, p: Vec3, side: Side) -> Vec<Attachment> {
                 (best, place) = (distance, (j, share));
             }
         }
-        if best >= FIBRE_REACH_MM {
+        let sheet = matches!(
+            fibre.muscle,
+            Muscle::FrontalisInner | Muscle::FrontalisOuter | Muscle::Masseter | Muscle::Temporalis
+        );
+        let reach = if sheet {
+            SHEET_REACH_MM
+        } else {
+            FIBRE_REACH_MM
+        };
+        if best >= reach {
             continue;
         }
-        let near = 1.0 - best / FIBRE_REACH_MM;
+        let near = 1.0 - best / reach;
         // At its origin a linear muscle lies on bone and holds no skin.
         let along = (place.0 as f32 + place.1) / (fibre.points.len() - 1) as f32;
         let (hold, weight) = match fibre.contraction {
+            // A sheet draws all the skin over it along.
+            Contraction::Linear if sheet => (along.sqrt(), 0.6),
             Contraction::Linear => (along.powi(3), 0.6),
             Contraction::Sphincter { .. } => (1.0, 1.0),
+            Contraction::Belly { .. } => ((std::f32::consts::PI * along).sin(), 0.6),
+        };
+        // What a lid carries is the lid's: the muscles of the brow end over it.
+        let hold = if fibre.muscle as usize >= Muscle::FrontalisInner as usize {
+            hold * (1.0 - lid).powi(2)
+        } else {
+            hold
         };
         let stiffness = FIBRE * weight * hold * near * near;
         if stiffness > 0.004 * FIBRE {

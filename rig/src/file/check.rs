@@ -6,7 +6,7 @@ use glam::Vec3;
 
 use super::parts::{BONES, REQUIRED};
 use super::{ANEW, HeadError, KEEP};
-use crate::{Contraction, Head, Layer, MuscleGrid, Part, Skin, SurfacePoint};
+use crate::{Head, Layer, MuscleGrid, Part, Skin, SurfacePoint};
 
 /// Nothing of a head lies further from its middle, mm.
 const FAR_MM: f32 = 2000.0;
@@ -213,14 +213,19 @@ fn muscle(grid: &MuscleGrid, vertices: usize) -> Checked {
     }
     let axes = grid.axes.is_empty() || grid.axes.len() == grid.fibres.len();
     that(axes, of, "it has not one axis per fibre")?;
-    let sound = grid.axes.iter().all(|axis| match axis {
-        Contraction::Linear => true,
-        Contraction::Sphincter {
-            centre,
-            mandible,
-            protrusion_mm,
-        } => near(*centre) && share(*mandible) && protrusion_mm.abs() <= FAR_MM,
+    let sound = grid.axes.iter().all(|axis| {
+        near(axis.from_middle)
+            && axis.spread_mm > 0.0
+            && axis.spread_mm <= FAR_MM
+            && share(axis.mandible)
+            && share(axis.shrinking)
+            && axis.protrusion_mm.abs() <= FAR_MM
     });
+    that(
+        (0.0..=FAR_MM).contains(&grid.bulge_mm),
+        of,
+        "its bulge cannot be",
+    )?;
     that(sound, of, "an axis cannot be")
 }
 
