@@ -83,7 +83,17 @@ fn welded<'a>(
 }
 
 /// The fibres of a head that is otherwise whole.
-fn fibres(_head: &Head) -> Result<Vec<Fibre>, HeadError> {
+fn fibres(head: &Head) -> Result<Vec<Fibre>, HeadError> {
+    if !head.muscles.is_empty() {
+        let bones = parts::BONES.iter().filter_map(|name| head.part(name));
+        let bones = bones.map(|part| &part.mesh);
+        return Ok(crate::rebuild(
+            &head.muscles,
+            &head.skin.mesh.positions,
+            bones,
+        ));
+    }
+    // Nothing is painted on the skin: the table of the reference head has to do.
     crate::reference::fibres().map_err(|e| HeadError::Muscles(e.to_string()))
 }
 
