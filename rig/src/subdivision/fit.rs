@@ -6,14 +6,12 @@ use glam::Vec3;
 
 use super::Stencils;
 
-/// Rounds; each leaves at most two thirds of the distance (far less where the mesh is smooth).
-const ROUNDS: usize = 24;
-/// Share of the distance that a round goes past the control point's own: the limit answers to a change
-/// by a quarter (at the spikiest) to all of it.
-const STRIDE: f32 = 1.4;
+/// Rounds. A bump as wide as many triangles is found in the first; a spike of one vertex, which needs
+/// four times its height of control point and would ring, keeps four tenths of its distance.
+const ROUNDS: usize = 3;
 
-/// Control positions whose limit is `targets`, by damped Jacobi rounds: mirrored and coincident creases
-/// stay so. `limit` is what [`limit_stencils`](super::limit_stencils) gives.
+/// Control positions whose limit is `targets` as nearly as is smooth, by Jacobi rounds: what is mirrored or
+/// coincides (creases) stays so. `limit` is what [`limit_stencils`](super::limit_stencils) gives.
 #[must_use]
 pub fn fit_control(limit: &Stencils, targets: &[Vec3]) -> Vec<Vec3> {
     let mut control = targets.to_vec();
@@ -21,7 +19,7 @@ pub fn fit_control(limit: &Stencils, targets: &[Vec3]) -> Vec<Vec3> {
     for _ in 0..ROUNDS {
         limit.apply(&control, &mut drawn);
         for ((c, drawn), target) in control.iter_mut().zip(&drawn).zip(targets) {
-            *c += (*target - *drawn) * STRIDE;
+            *c += *target - *drawn;
         }
     }
     control
