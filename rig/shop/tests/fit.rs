@@ -73,12 +73,46 @@ fn a_known_warp_is_found_again_through_noise_and_holes() {
 }
 
 #[test]
+fn what_lies_under_the_skin_is_carried_along() {
+    let pair = Pair::new(warp(3), 3, BAD_SCAN);
+    let (fit, _) = fitted(&pair);
+    let carrier = fit.carrier(&pair.template()).unwrap();
+    let errors = |depth: f32| {
+        let on_face = |v: &usize| pair.face[*v];
+        let inward =
+            |v: usize| pair.positions[v] - pair.positions[v].with_y(0.0).normalize() * depth;
+        Spread::of(
+            (0..pair.truth.len())
+                .filter(on_face)
+                .map(|v| carrier.point(inward(v)).distance(warp(3)(inward(v))))
+                .collect(),
+        )
+    };
+    assert!(errors(0.0).mean < 0.6, "{:?}", errors(0.0));
+    assert!(errors(12.0).mean < 1.2, "{:?}", errors(12.0));
+}
+
+#[test]
 fn landmarks_placed_by_an_unsteady_hand_do_not_crumple_the_face() {
     let clumsy = Faults {
         clumsy_mm: 1.5,
         ..BAD_SCAN
     };
     let pair = Pair::new(warp(2), 3, clumsy);
+    let (_, report) = fitted(&pair);
+    assert_good(&report);
+}
+
+#[test]
+fn landmarks_that_change_places_give_way_instead_of_folding_a_lip() {
+    let mut pair = Pair::new(warp(1), 3, BAD_SCAN);
+    // The peaks of the upper lip, 7 mm from its middle, past it.
+    let middle = pair.landmarks[7].1;
+    let peak = pair
+        .landmarks
+        .iter()
+        .position(|(from, _)| from.x > 5.0 && from.distance(pair.landmarks[7].0) < 10.0);
+    pair.landmarks[peak.unwrap()].1 = middle - Vec3::X * 3.0;
     let (_, report) = fitted(&pair);
     assert_good(&report);
 }

@@ -39,7 +39,7 @@ const ASIDE_FROM_MM: f32 = 0.4;
 const TOLERANCE: f32 = 1e-3;
 
 /// How hard landmarks pull, beside 1 for a vertex that found its place.
-const LANDMARK: f32 = 0.5;
+const LANDMARK: f32 = 0.3;
 
 /// The mesh as a system to be solved.
 pub(crate) struct Local<'a> {
@@ -47,7 +47,8 @@ pub(crate) struct Local<'a> {
     rings: Rings,
     /// Weight of each entry of `rings`; those of one vertex sum to one.
     shares: Vec<f32>,
-    landmarks: Vec<(Place, Vec3A)>,
+    /// Place, where it should be, how hard it pulls.
+    landmarks: Vec<(Place, Vec3A, f32)>,
     /// Per vertex: how much more than elsewhere its surroundings resist bending.
     stiff: Vec<f32>,
 }
@@ -61,7 +62,7 @@ struct Plane {
 }
 
 impl<'a> Local<'a> {
-    pub(crate) fn new(template: &'a Template<'a>, landmarks: Vec<(Place, Vec3)>) -> Self {
+    pub(crate) fn new(template: &'a Template<'a>, landmarks: Vec<(Place, Vec3, f32)>) -> Self {
         let count = template.positions.len();
         let mesh: Vec<[u32; 2]> = shared_edges(count, template.triangles)
             .into_iter()
@@ -82,7 +83,7 @@ impl<'a> Local<'a> {
         }
         let landmarks = landmarks
             .into_iter()
-            .map(|(place, to)| (place, to.into()))
+            .map(|(place, to, share)| (place, to.into(), LANDMARK * share))
             .collect();
         Self {
             template,
@@ -129,6 +130,12 @@ impl<'a> Local<'a> {
             .filter(|(_, marked)| **marked)
         {
             *stiff = (*stiff * 10.0).min(1e3);
+        }
+        for (place, _, pull) in &mut self.landmarks {
+            let ids = self.template.triangles[place.triangle as usize];
+            if ids.iter().any(|&v| marked[v as usize]) {
+                *pull *= 0.1;
+            }
         }
         let start: Vec<Vec3A> = positions.iter().map(|p| Vec3A::from(*p)).collect();
         let mut planes = self.look(&start, moved, target, options.reach_mm.1);
@@ -225,13 +232,13 @@ impl<'a> Local<'a> {
             }
             data[v] = block;
         }
-        for (place, to) in &self.landmarks {
+        for (place, to, pull) in &self.landmarks {
             let ids = self.template.triangles[place.triangle as usize];
             let at: Vec3A = (0..3)
                 .map(|k| start[ids[k] as usize] * place.shares[k])
                 .sum();
             for k in 0..3 {
-                wanted[ids[k] as usize] += (*to - at) * (LANDMARK * place.shares[k]);
+                wanted[ids[k] as usize] += (*to - at) * (pull * place.shares[k]);
             }
         }
         let inverse = self.preconditioner(&data, stiffness);
@@ -276,22 +283,20 @@ impl<'a> Local<'a> {
         bent: &mut [Vec3A],
         out: &mut [Vec3A],
     ) {
-        for v in 0..x.len() {
-            bent[v] = (x[v] - self.mean(x, v)) * (self.stiff[v] * stiffness);
+        for (v, (bent, out)) in bent.iter_mut().zip(out.iter_mut()).enumerate() {
+            *bent = (x[v] - self.mean(x, v)) * (self.stiff[v] * stiffness);
+            *out = data[v] * x[v] + *bent;
         }
-        for v in 0..x.len() {
-            out[v] = data[v] * x[v] + bent[v];
-        }
-        for v in 0..x.len() {
+        for (v, bent) in bent.iter().enumerate() {
             for k in self.rings.span(v) {
-                out[self.rings.entry(k)] -= bent[v] * self.shares[k];
+                out[self.rings.entry(k)] -= *bent * self.shares[k];
             }
         }
-        for (place, _) in &self.landmarks {
+        for (place, _, pull) in &self.landmarks {
             let ids = self.template.triangles[place.triangle as usize];
             let at: Vec3A = (0..3).map(|k| x[ids[k] as usize] * place.shares[k]).sum();
             for k in 0..3 {
-                out[ids[k] as usize] += at * (LANDMARK * place.shares[k]);
+                out[ids[k] as usize] += at * (pull * place.shares[k]);
             }
         }
     }
@@ -303,10 +308,10 @@ impl<'a> Local<'a> {
                 diagonal[self.rings.entry(k)] += self.shares[k].powi(2) * self.stiff[v] * stiffness;
             }
         }
-        for (place, _) in &self.landmarks {
+        for (place, _, pull) in &self.landmarks {
             let ids = self.template.triangles[place.triangle as usize];
             for k in 0..3 {
-                diagonal[ids[k] as usize] += LANDMARK * place.shares[k].powi(2);
+                diagonal[ids[k] as usize] += pull * place.shares[k].powi(2);
             }
         }
         data.iter()

@@ -1,14 +1,14 @@
 //! Fitting the reference head's skin to a scan (HEADSHOP 6): landmarks, warp, feature-mesh refinement, local fit.
 //!
 //! Template and scan are plain slices here; who reads files, turns and scales the scan into the head's frame (`align`)
-//! and lets skull, muscles and hair follow (`Fit::warp`) stands elsewhere. Every step is conservative: where the scan
+//! and lets skull, muscles and hair follow (`Fit::carrier`) stands elsewhere. Every step is conservative: where the scan
 //! has a hole, a border, an inside or nothing at all, the warp's smooth continuation stays.
 //!
 //! - `align`: the similarity between landmark sets, and whether sides were swapped
 //! - `estimate`: landmarks that were not given (6.1)
 //! - `feature`, `refine`: more landmarks by the feature mesh (6.2, Table 1)
 //! - `local`: the last fit of each vertex, within what smoothness allows
-//! - `turned`: faces turned over
+//! - `turned`, `upright`: faces turned over, and what is done about them
 //! - `visible`: what of a head a scanner can see
 //! - `report`: how good it became
 //! - `graph`: neighbours on a mesh
@@ -21,27 +21,20 @@ mod local;
 mod refine;
 pub mod report;
 pub mod turned;
+mod upright;
 mod visible;
 
 use std::time::Instant;
 
-use glam::{Vec3, Vec3A};
+use glam::Vec3;
 
 use crate::closest::{Facing, Hit, Surface, SurfaceError, smooth_normals};
 use crate::warp::{Warp, WarpError};
 use feature::Place;
 use local::Local;
-use turned::{face_normals, turned};
+use turned::face_normals;
+use upright::Steady;
 pub use visible::visible;
-
-/// A face this near to lying on its side (cosine) is already relaxed, so that none ends turned over.
-const NEARLY_TURNED: f32 = 0.25;
-
-/// How often turned faces are relaxed before their displacements are simply evened out.
-const RELAX_ROUNDS: usize = 3;
-
-/// How often evening out may widen its region. Each time, a ring more follows the warp.
-const EVEN_ROUNDS: usize = 6;
 
 /// The mesh to be fitted, at rest in its own frame, mm.
 #[derive(Debug, Clone, Copy)]
@@ -130,7 +123,7 @@ pub struct Fit {
     pub landmarks: Vec<Vec3>,
     /// The vertices as the landmarks alone warp them: what `positions` is judged against.
     pub by_landmarks: Vec<Vec3>,
-    /// The final warp, before the local fit: takes everything else of the head along (5.2).
+    /// The last warp, before the local fit. What follows the skin should use `carrier`.
     pub warp: Warp,
     /// How many correspondences the refinement found beside the landmarks.
     pub found: usize,
@@ -140,6 +133,29 @@ pub struct Fit {
     pub inside_out: bool,
     /// Time spent.
     pub seconds: Seconds,
+}
+
+impl Fit {
+    /// The warp that carries all else of a head to its new skin (HEADSHOP 5.2): through skin vertices everywhere, as
+    /// finally fitted, so that it follows the local fit too, and the back of the head where no scan was.
+    pub fn carrier(&self, template: &Template) -> Result<Warp, WarpError> {
+        /// One vertex in each cube of this edge, mm: several hundred on a head.
+        const CELL_MM: f32 = 10.0;
+        /// Neighbouring vertices with their noise may be missed by a little.
+        const GIVE_MM: f32 = 2.0;
+        let mut taken = std::collections::HashSet::new();
+        let (from, to): (Vec<Vec3>, Vec<Vec3>) = template
+            .positions
+            .iter()
+            .zip(&self.positions)
+            .zip(template.freedom)
+            .filter(|((p, _), freedom)| {
+                **freedom >= 1.0 && taken.insert((**p / CELL_MM).floor().as_ivec3())
+            })
+            .map(|(pair, _)| pair)
+            .unzip();
+        Warp::smoothed(&from, &to, &vec![GIVE_MM; from.len()])
+    }
 }
 
 /// The scan, seen so that its normals point outwards.
@@ -201,14 +217,17 @@ pub fn fit(
     }
     let rest = Surface::new(template.positions, template.triangles)?;
     let places: Vec<Place> = from.iter().filter_map(|p| place(&rest, *p)).collect();
-    let first = Warp::smoothed(&from, &to, &vec![options.give_mm.0; from.len()])?;
-    let mut by_landmarks = vec![Vec3::ZERO; template.positions.len()];
-    first.apply(template.positions, &mut by_landmarks);
+    let Steady {
+        warp: first,
+        positions: by_landmarks,
+        give,
+    } = upright::by_landmarks(template, (&from, &to), options.give_mm.0)?;
     let inside_out = is_inside_out(template, &by_landmarks, scan);
     let target = Target {
         surface: scan,
         sense: if inside_out { -1.0 } else { 1.0 },
     };
+    let to = settled(template, &target, &places, &to, &by_landmarks);
     seconds.warp = begun.elapsed().as_secs_f64();
 
     let should = face_normals(&by_landmarks, template.triangles);
@@ -217,7 +236,7 @@ pub fn fit(
         &target,
         &rest,
         &places,
-        (&from, &to),
+        (&from, &to, &give),
         first,
         &should,
         options,
@@ -226,10 +245,12 @@ pub fn fit(
 
     let mut local = Local::new(
         template,
-        places.iter().copied().zip(to.iter().copied()).collect(),
+        (0..places.len())
+            .map(|i| (places[i], to[i], options.give_mm.0 / give[i]))
+            .collect(),
     );
     let mut moved = local.run(&refined.positions, &target, options);
-    let relaxed = relax(
+    let relaxed = upright::relax(
         template,
         &mut local,
         &refined.positions,
@@ -238,7 +259,7 @@ pub fn fit(
         &should,
         options,
     );
-    let positions = displaced(&refined.positions, &moved);
+    let positions = upright::displaced(&refined.positions, &moved);
     seconds.total = begun.elapsed().as_secs_f64();
     seconds.local = seconds.total - seconds.refine - seconds.warp;
     Ok(Fit {
@@ -256,62 +277,28 @@ pub fn fit(
     })
 }
 
-/// Lets faces that turned over follow their surroundings; returns how many were treated at first.
-fn relax(
+/// The landmarks' targets, on the scan where it is near: a hand that missed it by a little must not dent the skin.
+fn settled(
     template: &Template,
-    local: &mut Local,
-    start: &[Vec3],
-    moved: &mut [Vec3A],
     target: &Target,
-    should: &[Vec3],
-    options: &Options,
-) -> usize {
-    let marked = |moved: &[Vec3A]| {
-        let bad = turned(
-            &displaced(start, moved),
-            template.triangles,
-            should,
-            NEARLY_TURNED,
-        );
-        let mut set = vec![false; start.len()];
-        for &face in &bad {
-            for v in template.triangles[face] {
-                set[v as usize] = true;
-            }
-        }
-        (bad.len(), set)
+    places: &[Place],
+    to: &[Vec3],
+    warped: &[Vec3],
+) -> Vec<Vec3> {
+    /// Farther away, the landmark was put into the air on purpose, mm.
+    const NEAR_MM: f32 = 3.0;
+    let normals = smooth_normals(warped, template.triangles);
+    let found = |(place, to): (&Place, &Vec3)| {
+        let direction = place.on(&normals, template.triangles).normalize_or_zero();
+        let facing = Facing {
+            direction,
+            cosine: 0.5,
+        };
+        target
+            .closest(*to, NEAR_MM, facing)
+            .map_or(*to, |(hit, _)| hit.point)
     };
-    let (first, mut set) = marked(moved);
-    let mut left = first;
-    for _ in 0..RELAX_ROUNDS {
-        if left == 0 {
-            return first;
-        }
-        local.grow(&mut set);
-        local.relax(start, moved, &set, target, options);
-        (left, set) = marked(moved);
-    }
-    let mut region = vec![false; start.len()];
-    for round in 0..EVEN_ROUNDS {
-        if left == 0 {
-            break;
-        }
-        for (r, s) in region.iter_mut().zip(&set) {
-            *r |= s;
-        }
-        local.grow(&mut region);
-        local.even_out(moved, &region, 5 * (round + 1));
-        (left, set) = marked(moved);
-    }
-    first
-}
-
-fn displaced(start: &[Vec3], moved: &[Vec3A]) -> Vec<Vec3> {
-    start
-        .iter()
-        .zip(moved)
-        .map(|(s, d)| *s + Vec3::from(*d))
-        .collect()
+    places.iter().zip(to).map(found).collect()
 }
 
 /// The place on a surface nearest to a point.

@@ -38,7 +38,7 @@ const SETTLED_MM: f32 = 0.15;
 const TURNING: f32 = 0.2;
 
 /// How often condemned pairs may be dropped and the warp solved again, in a round.
-const REPAIRS: usize = 3;
+const REPAIRS: usize = 5;
 
 /// What refinement leads to.
 pub(crate) struct Refined {
@@ -52,7 +52,7 @@ struct Pairs {
     from: Vec<Vec3>,
     to: Vec<Vec3>,
     give: Vec<f32>,
-    /// The leading ones are the user's and never dropped.
+    /// The leading ones are the user's: never dropped, but loosened where they fold the skin.
     given: usize,
 }
 
@@ -65,7 +65,7 @@ pub(crate) fn refine(
     target: &Target,
     rest: &Surface,
     places: &[Place],
-    (from, to): (&[Vec3], &[Vec3]),
+    (from, to, give): (&[Vec3], &[Vec3], &[f32]),
     mut warp: Warp,
     should: &[Vec3],
     options: &Options,
@@ -79,11 +79,10 @@ pub(crate) fn refine(
     };
     let mut feature = FeatureMesh::new(from, &places.iter().map(normal).collect::<Vec<_>>());
     let mut places = places.to_vec();
-    let give = vec![options.give_mm.0; from.len()];
     let mut pairs = Pairs {
         from: from.to_vec(),
         to: to.to_vec(),
-        give,
+        give: give.to_vec(),
         given: from.len(),
     };
     let mut positions = vec![Vec3::ZERO; template.positions.len()];
@@ -258,40 +257,38 @@ fn solve(
     Ok(before)
 }
 
-/// Drops, for each bad face, the pairs of this round that are nearest to it.
+/// For each bad face, the nearest of the landmarks and of this round's pairs: a pair is dropped, a landmark loosened.
 fn drop_near(template: &Template, pairs: &mut Pairs, first: usize, bad: &[usize]) {
-    /// A pair beside a bad face is one of this many.
-    const SUSPECTS: usize = 3;
-    let mut keep = vec![true; pairs.from.len()];
+    /// What stands beside a bad face is one of this many.
+    const SUSPECTS: usize = 4;
+    /// How much more a suspected landmark gives way.
+    const LOOSER: f32 = 6.0;
+    let mut suspected = vec![false; pairs.from.len()];
     for &face in bad {
         let centre = template.triangles[face]
             .iter()
             .map(|&v| template.positions[v as usize])
             .sum::<Vec3>()
             / 3.0;
-        let mut order: Vec<usize> = (first..pairs.from.len()).collect();
-        order.sort_by(|&a, &b| {
-            pairs.from[a]
-                .distance_squared(centre)
-                .total_cmp(&pairs.from[b].distance_squared(centre))
-        });
-        for &suspect in order.iter().take(SUSPECTS) {
-            keep[suspect] = false;
+        let mut order: Vec<usize> = (0..pairs.given).chain(first..pairs.from.len()).collect();
+        order.sort_by_key(|&i| pairs.from[i].distance_squared(centre).to_bits());
+        for &i in order.iter().take(SUSPECTS) {
+            suspected[i] = true;
         }
     }
-    let kept = |list: &[Vec3]| {
-        list.iter()
-            .zip(&keep)
-            .filter(|(_, k)| **k)
-            .map(|(p, _)| *p)
-            .collect::<Vec<_>>()
-    };
-    (pairs.from, pairs.to) = (kept(&pairs.from), kept(&pairs.to));
-    pairs.give = pairs
-        .give
-        .iter()
-        .zip(&keep)
-        .filter(|(_, k)| **k)
-        .map(|(g, _)| *g)
+    for (give, _) in pairs.give[..pairs.given]
+        .iter_mut()
+        .zip(&suspected)
+        .filter(|(_, s)| **s)
+    {
+        *give *= LOOSER;
+    }
+    let kept: Vec<usize> = (0..pairs.from.len())
+        .filter(|&i| i < pairs.given || !suspected[i])
         .collect();
+    (pairs.from, pairs.to) = (
+        kept.iter().map(|&i| pairs.from[i]).collect(),
+        kept.iter().map(|&i| pairs.to[i]).collect(),
+    );
+    pairs.give = kept.iter().map(|&i| pairs.give[i]).collect();
 }

@@ -1,6 +1,8 @@
 //! A pair to fit: the reference head's skin, and a "scan" of it after a known smooth warp, with noise and holes, without
 //! a back of the head and without the insides that no scanner sees. Shared by tests, bench and example.
 
+#![allow(clippy::expect_used, reason = "a test without its head is over")]
+
 use std::collections::HashMap;
 
 use glam::{Vec3, vec3};
@@ -49,29 +51,29 @@ const MARKS: [[f32; 3]; 37] = [
 ];
 
 /// Everything a fit needs, and what should come out.
-pub struct Pair {
-    pub positions: Vec<Vec3>,
-    pub triangles: Vec<[u32; 3]>,
-    pub freedom: Vec<f32>,
-    pub face: Vec<bool>,
-    pub scan: (Vec<Vec3>, Vec<[u32; 3]>),
-    pub landmarks: Vec<(Vec3, Vec3)>,
+pub(crate) struct Pair {
+    pub(crate) positions: Vec<Vec3>,
+    pub(crate) triangles: Vec<[u32; 3]>,
+    pub(crate) freedom: Vec<f32>,
+    pub(crate) face: Vec<bool>,
+    pub(crate) scan: (Vec<Vec3>, Vec<[u32; 3]>),
+    pub(crate) landmarks: Vec<(Vec3, Vec3)>,
     /// Where every vertex of the template should come to lie.
-    pub truth: Vec<Vec3>,
+    pub(crate) truth: Vec<Vec3>,
 }
 
 /// What is wrong with the scan.
 #[derive(Clone, Copy)]
-pub struct Faults {
-    pub noise_mm: f32,
-    pub holes: bool,
+pub(crate) struct Faults {
+    pub(crate) noise_mm: f32,
+    pub(crate) holes: bool,
     /// Landmarks off by about this much, mm.
-    pub clumsy_mm: f32,
+    pub(crate) clumsy_mm: f32,
 }
 
 impl Pair {
     /// `parts`: into how many pieces each edge of the template is cut for the scan.
-    pub fn new(warp: impl Fn(Vec3) -> Vec3, parts: u32, faults: Faults) -> Self {
+    pub(crate) fn new(warp: impl Fn(Vec3) -> Vec3, parts: u32, faults: Faults) -> Self {
         let head = Head::reference().expect("the reference head");
         let mesh = &head.skin.mesh;
         let (positions, triangles) = (mesh.positions.clone(), mesh.triangles.clone());
@@ -133,7 +135,7 @@ impl Pair {
         }
     }
 
-    pub fn template(&self) -> Template<'_> {
+    pub(crate) fn template(&self) -> Template<'_> {
         Template {
             positions: &self.positions,
             triangles: &self.triangles,
@@ -142,7 +144,7 @@ impl Pair {
     }
 
     /// How far landmarks on the fitted skin are from where they should be, mm.
-    pub fn landmark_errors(&self, fit: &Fit, warp: impl Fn(Vec3) -> Vec3) -> Vec<f32> {
+    pub(crate) fn landmark_errors(&self, fit: &Fit, warp: impl Fn(Vec3) -> Vec3) -> Vec<f32> {
         self.landmarks
             .iter()
             .zip(&fit.landmarks)
@@ -161,12 +163,12 @@ const HOLES: [[f32; 3]; 5] = [
 ];
 
 /// The part of a head that has a face's accuracy to keep.
-pub fn on_face(p: Vec3) -> bool {
+pub(crate) fn on_face(p: Vec3) -> bool {
     p.z > 35.0 && p.y > -78.0 && p.y < 105.0 && p.x.abs() < 68.0
 }
 
 /// Smooth warps a fit must undo: a smaller head, a wide one, a narrow one, one with a long nose.
-pub fn warp(kind: usize) -> impl Fn(Vec3) -> Vec3 + Copy {
+pub(crate) fn warp(kind: usize) -> impl Fn(Vec3) -> Vec3 + Copy {
     let scale = [
         vec3(0.82, 0.78, 0.8),
         vec3(1.12, 0.97, 1.0),
