@@ -1,5 +1,9 @@
 //! A head as a file: what is written is read again, by us and after other programs, and what is no
 //! head is refused in words.
+#![allow(
+    clippy::unwrap_used,
+    reason = "a test that cannot go on has failed, and says where"
+)]
 
 mod like;
 
@@ -177,6 +181,14 @@ fn what_is_broken_is_named_with_its_mend() {
         (
             replaced("\"shares\":[0.25,", "\"shares\":[0.75,"),
             ["landmark `prn`", "no triangle"],
+        ),
+        (
+            replaced("\"shares\":[0.2,", "\"shares\":[2.2,"),
+            ["muscle Risorius", "a point of its grid"],
+        ),
+        (
+            replaced("\"name\":\"skull\"", "\"name\":\"sku11\""),
+            ["node `skull`", "muscles begin on it"],
         ),
         (
             replaced("\"lids\":[{\"hold\":1.0", "\"lids\":[{\"hold\":7.0"),

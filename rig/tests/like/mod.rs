@@ -7,7 +7,10 @@
 use std::sync::OnceLock;
 
 use glam::{Vec2, Vec3};
-use mouthpiece_rig::{ColourMap, Head, Landmark, Layer, SurfacePoint};
+use mouthpiece_rig::{
+    Body, ColourMap, GridPoint, Head, Landmark, Layer, Material, Muscle, MuscleGrid, SurfacePoint,
+    rebuild,
+};
 
 pub(crate) fn reference() -> &'static Head {
     static HEAD: OnceLock<Head> = OnceLock::new();
@@ -38,6 +41,17 @@ pub(crate) fn decorated() -> Head {
         },
         of: None,
     }];
+    for (name, body) in [("skull", Body::Skull), ("mandible", Body::Mandible)] {
+        let mut bone = head.part("teeth_upper").unwrap().clone();
+        bone.name = name.into();
+        bone.material = Material::Bone;
+        bone.bodies = vec![body];
+        bone.weight = vec![0.0; bone.mesh.positions.len()];
+        head.parts.push(bone);
+    }
+    head.muscles = vec![grid(&head, Muscle::Risorius), grid(&head, Muscle::Mentalis)];
+    let bones = ["skull", "mandible"].map(|name| &head.part(name).unwrap().mesh);
+    head.fibres = rebuild(&head.muscles, &head.skin.mesh.positions, bones);
     let (width, height) = (64, 32);
     head.colour = Some(ColourMap {
         width,
@@ -47,6 +61,25 @@ pub(crate) fn decorated() -> Head {
             .collect(),
     });
     head
+}
+
+/// Two fibres over the first triangles of the skin.
+fn grid(head: &Head, muscle: Muscle) -> MuscleGrid {
+    let point = |t: usize, depth: f32| GridPoint {
+        at: SurfacePoint {
+            vertices: head.skin.mesh.triangles[t],
+            shares: [0.2, 0.3, 0.5],
+        },
+        depth,
+        mandible: 0.1,
+    };
+    let fibre = |t: usize| vec![point(t, 0.8), point(t + 5, 0.3)];
+    MuscleGrid {
+        muscle,
+        fibres: vec![fibre(0), fibre(20)],
+        axes: Vec::new(),
+        bulge_mm: 0.0,
+    }
 }
 
 /// Places of triangles by their corners, so that their order does not matter.
