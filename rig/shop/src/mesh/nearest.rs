@@ -105,46 +105,26 @@ pub(crate) struct Spot {
     pub(crate) outward: DVec3,
 }
 
-/// How the surface lies about some spots.
-#[derive(Clone, Copy, Debug)]
-pub(crate) struct Lie {
-    /// Mean cosine between the triangles' normals and what should be outwards: -1..1.
-    pub(crate) facing: f64,
-    /// Mean depth of the surface about each spot behind it, as a share of the radius: a head bulges, so
-    /// it is above zero, whichever way the triangles are wound.
-    pub(crate) bulge: f64,
-}
-
 /// Triangles looked at in all: a sample tells as much as all of them.
 const SAMPLE: usize = 20_000;
 
-/// How the surface within `radius` of `spots` lies.
-pub(crate) fn lie(scan: &Scan, spots: &[Spot], radius: f64) -> Lie {
+/// Mean cosine between the normals of the triangles within `radius` of `spots` and what should be
+/// outwards there: -1..1, below zero where the scan is inside out.
+pub(crate) fn facing(scan: &Scan, spots: &[Spot], radius: f64) -> f64 {
     let stride = scan.triangles.len().div_ceil(SAMPLE).max(1);
-    let (mut cosine, mut depth, mut area) = (0.0, 0.0, 0.0);
+    let (mut cosine, mut area) = (0.0, 0.0);
     for t in scan.triangles.iter().step_by(stride) {
         let [a, b, c] = t.map(|i| scan.positions[i as usize].as_dvec3());
         let (middle, normal) = ((a + b + c) / 3.0, (b - a).cross(c - a));
         let size = normal.length();
         for spot in spots {
-            let offset = middle - spot.at;
-            if offset.length_squared() < radius * radius {
+            if middle.distance_squared(spot.at) < radius * radius {
                 cosine += normal.dot(spot.outward);
-                depth -= offset.dot(spot.outward) * size;
                 area += size;
             }
         }
     }
-    if area <= 0.0 {
-        return Lie {
-            facing: 0.0,
-            bulge: 0.0,
-        };
-    }
-    Lie {
-        facing: cosine / area,
-        bulge: depth / area / radius,
-    }
+    if area > 0.0 { cosine / area } else { 0.0 }
 }
 
 #[cfg(test)]

@@ -5,9 +5,9 @@
 use glam::{DMat3, DMat4, DVec3, Vec3};
 use serde::Serialize;
 
-use super::check::{Pairs, mirror};
+use super::check::{Pairs, Verdict, mirror};
 use super::error::{Fault, Place, ScanError};
-use super::nearest::{Lie, Nearest, Spot, lie};
+use super::nearest::{Nearest, Spot, facing};
 use super::scan::{Scan, ScanColour};
 use super::similarity::{Similarity, mean};
 use super::tidy::{Dropped, tidy};
@@ -93,8 +93,10 @@ const OFF_SURFACE: f64 = 20.0;
 const OFF_RIM: f64 = 60.0;
 /// Radius about the landmarks in which the surface is asked which way it lies, mm.
 const AROUND: f64 = 30.0;
-/// A surface that bulges by less than this share of the radius is flat and says nothing.
-const FLAT: f64 = 0.01;
+/// Farther than this a landmark of the reference has no counterpart on the scan, mm.
+const FAR: f64 = 40.0;
+/// A mirrored reference must lie this much nearer to the surface to be believed, mm.
+const CLEARLY: f64 = 1.0;
 
 /// Makes `scan` ready.
 ///
@@ -139,29 +141,25 @@ pub fn prepare(
         reference: there,
         points: measured.points.iter().map(|&p| p * mm).collect(),
     };
-    let normals: Vec<DVec3> = known
-        .iter()
-        .map(|k| reference[k.0].normal.as_dvec3())
-        .collect();
-    let similarity = pairs.fit();
-    let mut inside_out = false;
-    let exchanged = pairs.exchanged(measured.ratio);
-    let mirrored = pairs.is_mirrored(measured.ratio, exchanged.as_ref());
-    if let Some(exchanged) = exchanged.filter(|_| !mirrored) {
-        return Err(fault(exchanged.fault()));
-    }
-    match hand(&scan, &pairs, &normals, &measured, mirrored) {
-        Hand::Right => {}
-        Hand::InsideOut => inside_out = true,
+    let seen = Seen {
+        scan: &scan,
+        reference,
+        known: &known,
+        measured: &measured,
+    };
+    let inside_out = match seen.hand(&pairs).map_err(fault)? {
+        Hand::Right => false,
+        Hand::InsideOut => true,
         Hand::Swapped => return Err(fault(LandmarkFault::Swapped)),
         Hand::Mirrored => return Err(scan_fault(Fault::Mirrored)),
-    }
+    };
     pairs.apart(measured.ratio).map_err(fault)?;
     pairs.none_astray(measured.ratio).map_err(fault)?;
     let mut notes: Vec<String> = measured.note.iter().cloned().collect();
     if inside_out {
         notes.push("the scan's triangles faced inwards and were turned".to_owned());
     }
+    let similarity = pairs.fit();
     let report = Preparation {
         dropped,
         mm_per_unit: mm,
@@ -207,42 +205,97 @@ enum Hand {
     Mirrored,
 }
 
-/// Which hand the landmarks and the surface are of. Landmarks alone cannot tell exchanged sides from a
-/// mirrored scan, and landmarks in one plane cannot even tell front from back: the surface tells.
-fn hand(
-    scan: &Scan,
-    pairs: &Pairs<'_>,
-    normals: &[DVec3],
-    measured: &Measured,
-    is_mirrored: bool,
-) -> Hand {
-    let radius = AROUND * measured.ratio / measured.mm_per_unit;
-    let about = |turn: &dyn Fn(DVec3) -> DVec3| -> Lie {
-        let spot = |(&at, &normal): (&DVec3, &DVec3)| Spot {
-            at,
-            outward: turn(normal),
+/// Scan and reference, to be held against each other.
+struct Seen<'a> {
+    scan: &'a Scan,
+    reference: &'a [ReferencePoint],
+    known: &'a [(usize, DVec3)],
+    measured: &'a Measured,
+}
+
+impl Seen<'_> {
+    /// Which hand landmarks and surface are of. Landmarks alone cannot tell exchanged sides from a
+    /// mirrored scan, and landmarks in one plane cannot even tell front from back: the surface tells.
+    fn hand(&self, given: &Pairs<'_>) -> Result<Hand, LandmarkFault> {
+        let ratio = self.measured.ratio;
+        let sides = given.sides();
+        let mut crossed = given.crossed(&sides, ratio);
+        let mut pairs = given.exchanged(&sides, &crossed);
+        if given.mirrored_error() < 1.05 * pairs.error() + 0.1 * ratio {
+            // One exchange of everything says it all.
+            pairs = given.exchanged(&sides, &[]);
+            crossed.fill(false);
+        }
+        let straight = pairs.fit();
+        let mirrored = pairs.fit_mirrored();
+        let nearer = |by: f64| {
+            let off = self.off_surface(&straight, &|p| p);
+            self.off_surface(&mirrored, &mirror) + by < off
         };
-        let spots: Vec<Spot> = measured.points.iter().zip(normals).map(spot).collect();
-        lie(scan, &spots, radius)
-    };
-    let similarity = pairs.fit();
-    let straight = about(&|normal| similarity.rotation * normal);
-    let mirrored = pairs.fit_mirrored();
-    let turned = about(&|normal| mirrored.rotation * mirror(normal));
-    if is_mirrored {
-        return if turned.facing < 0.0 {
-            Hand::Mirrored
+        let turned = match pairs.hand(ratio) {
+            Verdict::Straight => false,
+            Verdict::Mirrored => true,
+            Verdict::Likely => nearer(0.0),
+            Verdict::Open => nearer(CLEARLY * ratio),
+        };
+        let faces_out = if turned {
+            self.faces_out(&|normal| mirrored.rotation * mirror(normal))
         } else {
-            Hand::Swapped
+            self.faces_out(&|normal| straight.rotation * normal)
         };
+        if turned && crossed.contains(&true) {
+            // Then the others are the ones that are exchanged.
+            crossed.iter_mut().for_each(|c| *c = !*c);
+        } else if turned {
+            return Ok(if faces_out {
+                Hand::Swapped
+            } else {
+                Hand::Mirrored
+            });
+        }
+        let count = crossed.iter().filter(|c| **c).count();
+        let lateral = |name: &&&str| name.ends_with("_l") || name.ends_with("_r");
+        match count {
+            0 => Ok(if faces_out {
+                Hand::Right
+            } else {
+                Hand::InsideOut
+            }),
+            n if 2 * n == given.names.iter().filter(lateral).count() => Ok(if faces_out {
+                Hand::Swapped
+            } else {
+                Hand::Mirrored
+            }),
+            _ => Err(given.fault(&sides, &crossed)),
+        }
     }
-    if straight.bulge < -FLAT && turned.bulge > FLAT {
-        return Hand::Swapped;
+
+    /// Whether the triangles about the landmarks face the way that `turn` makes of the reference's normals.
+    fn faces_out(&self, turn: &dyn Fn(DVec3) -> DVec3) -> bool {
+        let spot = |(k, &at): (&(usize, DVec3), &DVec3)| Spot {
+            at,
+            outward: turn(self.reference[k.0].normal.as_dvec3()),
+        };
+        let spots: Vec<Spot> = self
+            .known
+            .iter()
+            .zip(&self.measured.points)
+            .map(spot)
+            .collect();
+        let radius = AROUND * self.measured.ratio / self.measured.mm_per_unit;
+        facing(self.scan, &spots, radius) >= 0.0
     }
-    if straight.facing < 0.0 {
-        Hand::InsideOut
-    } else {
-        Hand::Right
+
+    /// How far the reference's landmarks, all of them, lie from the surface once `fit` has moved them,
+    /// mm on average; what is farther than `FAR` counts as that, since scans have holes.
+    fn off_surface(&self, fit: &Similarity, shape: &dyn Fn(DVec3) -> DVec3) -> f64 {
+        let nearest = Nearest::new(self.scan);
+        let mm = self.measured.mm_per_unit;
+        let off = |r: &ReferencePoint| {
+            let at = fit.apply(shape(r.at.as_dvec3())) / mm;
+            (nearest.find(at).0 * mm).min(FAR * self.measured.ratio)
+        };
+        self.reference.iter().map(off).sum::<f64>() / self.reference.len() as f64
     }
 }
 

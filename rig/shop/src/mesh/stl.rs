@@ -136,30 +136,28 @@ fn read_text(bytes: &[u8]) -> Result<Builder, Found> {
         last = line;
         let mut rest = words(text);
         let Some(key) = rest.next() else { continue };
-        match key.to_ascii_lowercase().as_slice() {
-            b"facet" => {
-                open = true;
-                corners.clear();
+        let is = |word: &str| key.eq_ignore_ascii_case(word.as_bytes());
+        if is("facet") {
+            open = true;
+            corners.clear();
+        } else if open && is("vertex") {
+            let mut at = [0.0; 3];
+            for coordinate in &mut at {
+                let word = rest.next().unwrap_or_default();
+                *coordinate = number(word, "a coordinate", line)?;
             }
-            b"vertex" if open => {
-                let mut at = [0.0; 3];
-                for coordinate in &mut at {
-                    let word = rest.next().unwrap_or_default();
-                    *coordinate = number(word, "a coordinate", line)?;
-                }
-                let vertex = known.vertex(&mut out, DVec3::from_array(at));
-                corners.push(vertex.map_err(|f| Found::line(line, f))?);
-            }
-            b"endfacet" if open => {
-                open = false;
-                out.face(&corners, &[], 0)
-                    .map_err(|f| Found::line(line, f))?;
-            }
-            b"solid" | b"outer" | b"endloop" | b"endsolid" => {}
-            _ => {
-                let why = format!("`{}` has no place here", quote(key));
-                return Err(Found::line(line, Fault::NotThis { format: "STL", why }));
-            }
+            let vertex = known.vertex(&mut out, DVec3::from_array(at));
+            corners.push(vertex.map_err(|f| Found::line(line, f))?);
+        } else if open && is("endfacet") {
+            open = false;
+            out.face(&corners, &[], 0)
+                .map_err(|f| Found::line(line, f))?;
+        } else if !["outer", "endloop", "solid", "endsolid"]
+            .into_iter()
+            .any(is)
+        {
+            let why = format!("`{}` has no place here", quote(key));
+            return Err(Found::line(line, Fault::NotThis { format: "STL", why }));
         }
     }
     if open {
