@@ -39,7 +39,8 @@ impl FromStr for Tier {
 pub(crate) struct Smoothness {
     /// How often a side of the head's own triangles may be halved.
     pub(crate) levels: usize,
-    /// A side is halved where the surface bows from it by more than this, mm; 0: always.
+    /// A side is halved where the surface bows from it by more than this, mm; 0: always. A quarter of a
+    /// pixel in a picture of 640 x 480, where each triangle more is felt in software.
     pub(crate) bow_mm: f32,
 }
 
@@ -96,7 +97,7 @@ impl Tier {
             Self::Medium => Detail {
                 smoothness: Smoothness {
                     levels: 1,
-                    bow_mm: 0.1,
+                    bow_mm: 0.15,
                 },
                 samples: 4,
                 map_width: 2048,
@@ -109,7 +110,7 @@ impl Tier {
             Self::High => Detail {
                 smoothness: Smoothness {
                     levels: 2,
-                    bow_mm: 0.12,
+                    bow_mm: 0.15,
                 },
                 samples: 4,
                 map_width: 4096,
