@@ -14,8 +14,10 @@
 //! | `relax` | slides and flips what is free |
 //! | `skin` | both halves |
 //! | `marks` | landmarks and feature lines |
+//! | `bones` | skull and mandible |
 //! | `eyes`, `teeth`, `inside`, `trunk` | the other parts |
 
+mod bones;
 mod chart;
 mod crown;
 mod ear;
@@ -36,19 +38,20 @@ mod trunk;
 
 use glam::{Vec3, vec3};
 use mouthpiece_rig::{
-    Calibration, Eye, Head, LipStencils, Placement, SubdivisionError, fit_control,
+    Calibration, Eye, Head, LipStencils, Placement, SubdivisionError, fit_control, normals,
 };
 use thiserror::Error;
 
 use crate::closest::SurfaceError;
 use crate::mesh::ScanError;
+use crate::{colour, hair, occlusion};
 use target::Target;
 
 /// What can be wrong with the data that the crate carries; none of it is a user's doing.
 #[derive(Debug, Error)]
 pub enum SculptError {
-    /// The surface cannot be read.
-    #[error("rig/shop/data/mean_head.ply: {0}; restore it from the repository")]
+    /// A mesh cannot be read.
+    #[error("{0}; restore it from the repository")]
     Surface(#[from] ScanError),
     /// The surface is none.
     #[error("rig/shop/data/mean_head.ply: {0}; restore it from the repository")]
@@ -59,9 +62,12 @@ pub enum SculptError {
     /// The landmarks are no JSON of the expected form.
     #[error("rig/shop/data/landmarks.json: {0}; restore it from the repository")]
     Landmarks(serde_json::Error),
-    /// A landmark is not where the skin is.
+    /// The bones' landmarks are no JSON of the expected form.
+    #[error("rig/shop/data/skull_landmarks.json: {0}; restore it from the repository")]
+    BoneLandmarks(serde_json::Error),
+    /// A landmark is not where its surface is.
     #[error(
-        "rig/shop/data/landmarks.json: {0} lies far from the skin; restore the file from the repository"
+        "the landmark {0} lies far from its surface; restore rig/shop/data from the repository"
     )]
     Astray(String),
     /// The template is no surface.
@@ -92,8 +98,12 @@ pub fn reference(calibration: Calibration) -> Result<Head, SculptError> {
     parts.extend(teeth::parts());
     parts.extend(inside::parts());
     parts.push(trunk::cloth());
+    let (skeleton, on_bone) = bones::build()?;
+    parts.extend(skeleton);
+    let mut landmarks = marks::landmarks(&skin, &drawn)?;
+    landmarks.extend(on_bone);
     let mut head = Head {
-        landmarks: marks::landmarks(&skin, &drawn)?,
+        landmarks,
         features: marks::features(&target),
         skin,
         parts,
@@ -115,5 +125,10 @@ pub fn reference(calibration: Calibration) -> Result<Head, SculptError> {
     // The drawn surface is to pass through the template's vertices.
     head.skin.mesh.positions = fit_control(&head.skin_limit()?, &drawn);
     head.skin.reference.clone_from(&head.skin.mesh.positions);
+    head.skin.mesh.normals = normals(&head.skin.mesh.positions, &head.skin.mesh.triangles);
+    head.parts.extend(hair::grow(&head));
+    head.parts.extend(hair::lashes(&head));
+    occlusion::bake(&mut head);
+    head.colour = Some(colour::paint(&head, colour::WIDTH));
     Ok(head)
 }

@@ -12,8 +12,8 @@ use super::{SculptError, chart, crown, ear, mouth, relax, shapes, sockets};
 
 /// Middle of the left ear on its island and of the island on the texture, and the size of a millimetre on it.
 const ISLAND_FROM: Vec2 = vec2(6.5, 7.5);
-const ISLAND_AT: Vec2 = vec2(0.935, 0.19);
-const ISLAND_MM: Vec2 = vec2(1.0 / 597.0, 1.0 / 256.0);
+const ISLAND_AT: Vec2 = vec2(0.945, 0.127);
+const ISLAND_MM: Vec2 = vec2(0.68 / 597.0, 0.68 / 256.0);
 /// Vertices nearer to the mid plane than this lie on it, mm.
 const SEAM_MM: f32 = 0.01;
 

@@ -155,7 +155,7 @@ fn gums(crowns: &[Crown; 7], up: f32) -> Mesh {
         let turn = std::f32::consts::PI * v;
         let scallop = 0.5 * (u * 72.0 * 0.5).cos().abs();
         let across = (0.5 * depth + 0.6) * turn.cos();
-        let rise = height * 0.86 + scallop + 9.0 * (1.0 - turn.sin().powf(0.6));
+        let rise = height * 0.86 + scallop + 9.0 * (1.0 - turn.sin().max(0.0).powf(0.6));
         p + out * (across + 0.8 * (1.0 - turn.sin())) + vec3(0.0, up * rise, 0.0)
     }))
 }
