@@ -76,6 +76,10 @@ impl Ground {
         let size = vec2(width as f32, height as f32);
         for (number, t) in skin.mesh.triangles.iter().enumerate() {
             let uvs = wedge(head, number);
+            let island = (0..3).any(|k| {
+                let off = uvs[k] - skin.mesh.uvs[t[k] as usize];
+                vec2(off.x - off.x.round(), off.y).length() > 0.02
+            });
             // Past the map's side a triangle goes on at the other.
             for turn in [0.0, 1.0] {
                 let corner: [(Vec2, Vec3, f32); 3] = std::array::from_fn(|k| {
@@ -84,7 +88,8 @@ impl Ground {
                     (at, skin.mesh.positions[i], skin.vermilion[i])
                 });
                 draw(&corner, (width, height), |at, place, red| {
-                    let outward = vec2(place.x, place.z).length();
+                    // Ears lie over scalp that hair hides.
+                    let outward = vec2(place.x, place.z).length() + if island { 1e4 } else { 0.0 };
                     if outward > depth[at] {
                         depth[at] = outward;
                         cells[at] = Some((place, red));

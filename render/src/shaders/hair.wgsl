@@ -53,7 +53,7 @@ fn hair_vertex(in: PartVertex) -> HairFragment {
         + rim * 0.7;
     let bright = dot(key, vec3(0.3333));
     let rim_bright = dot(rim, vec3(0.3333)) * strand_lobe(t, rim_h, 24.0);
-    out.places = vec4(in.uv, 0.075 * mirrored * bright + 0.05 * rim_bright, 1.5 * through * bright);
+    out.places = vec4(in.uv, 0.075 * mirrored * bright + 0.022 * rim_bright * deep, 1.5 * through * bright);
     return out;
 }
 

@@ -71,7 +71,7 @@ fn skin_vertex(in: SkinVertex) -> SkinFragment {
 
     // The room and the lamps mirrored in the skin's oil, and the down of the cheek at grazing sight.
     let rim = gloss(n, v, frame.rim_dir.xyz, 0.5) * (1.0 + 6.0 * edge) * occlusion * occlusion;
-    let fill = gloss(n, v, frame.fill_dir.xyz, 0.5);
+    let fill = gloss(n, v, frame.fill_dir.xyz, 0.5) * occlusion;
     let mirrored = (frame.fill_colour.rgb * fill + frame.rim_colour.rgb * rim) * 0.022
         + ambient_from(reflect(-v, n)) * ((0.018 + 0.08 * edge) * occlusion * occlusion);
     let shadow = shadow_place(world, n);

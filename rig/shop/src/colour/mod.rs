@@ -80,7 +80,7 @@ fn spot(skin: &Skin, texel: &Texel) -> Spot {
     };
     Spot {
         place,
-        chart: glam::vec2(mix(&unrolled), mix(&|i| skin.mesh.uvs[i].y)),
+        chart: glam::vec2(mix(&unrolled).rem_euclid(1.0), mix(&|i| skin.mesh.uvs[i].y)),
         red: mix(&|i| skin.vermilion[i]),
         wet: mix(&|i| skin.wet[i]),
         open: mix(&|i| skin.mesh.occlusion.get(i).copied().unwrap_or(1.0)),

@@ -18,7 +18,7 @@ const GROWN: f32 = 0.75;
 
 /// What lies under the middle of each texel of a map `width` texels across and half as many down, row by row from
 /// the upper left; none where no skin is mapped. Where parts of the skin share texels (the inner side of lips,
-/// lids and nostrils), the dry and outer one wins.
+/// lids and nostrils), the dry and outer one wins; ears lie over scalp that hair hides.
 #[must_use]
 pub fn texels(skin: &Skin, width: usize) -> Vec<Option<Texel>> {
     let height = (width / 2).max(1);
@@ -28,6 +28,7 @@ pub fn texels(skin: &Skin, width: usize) -> Vec<Option<Texel>> {
     let size = vec2(width as f32, height as f32);
     for (number, corners) in skin.mesh.triangles.iter().enumerate() {
         let uvs = wedge(skin, number, corners);
+        let island = is_island(skin, &uvs, corners);
         let wet: f32 = corners.iter().map(|i| skin.wet[*i as usize]).sum();
         let out: f32 = corners
             .iter()
@@ -45,7 +46,9 @@ pub fn texels(skin: &Skin, width: usize) -> Vec<Option<Texel>> {
             }
             let corners = uvs.map(|uv| (uv + vec2(turn, 0.0)) * size);
             draw(corners, (width, height), |at, shares, inside| {
-                let score = out - 1e4 * wet + if inside { 1e6 } else { 0.0 };
+                let score = out - 1e4 * wet
+                    + if inside { 1e6 } else { 0.0 }
+                    + if island { 1e7 } else { 0.0 };
                 if score > rank[at] {
                     rank[at] = score;
                     map[at] = Some(Texel {
@@ -57,6 +60,15 @@ pub fn texels(skin: &Skin, width: usize) -> Vec<Option<Texel>> {
         }
     }
     map
+}
+
+/// Whether a triangle is mapped elsewhere than its place in the chart: an ear. What it covers there is hidden skin.
+fn is_island(skin: &Skin, uvs: &[Vec2; 3], corners: &[u32; 3]) -> bool {
+    const APART: f32 = 0.02;
+    uvs.iter().zip(corners).any(|(uv, i)| {
+        let off = *uv - skin.mesh.uvs[*i as usize];
+        vec2(off.x - off.x.round(), off.y).length() > APART
+    })
 }
 
 /// Texture coordinates of a triangle's corners, unrolled past the seam.

@@ -103,7 +103,8 @@ impl Face {
         // Between the roots the scalp shows less and less.
         let chart = spot.chart * CHART_MM;
         let depth = depth - waver_mm(chart);
-        c = c.lerp(SCALP, 0.92 * ramp(-3.5, 8.0, depth));
+        c = c.lerp(SCALP, 0.92 * ramp(-4.0, 6.0, depth));
+        c = c.lerp(HAIR, 0.85 * ramp(2.0, 11.0, depth));
         c = c.lerp(HAIR, hair.clamp(0.0, 1.0));
         c.to_array()
             .map(|v| (v.clamp(0.0, 1.0) * 255.0 + 0.5) as u8)
@@ -203,7 +204,7 @@ impl Face {
         let crease = value(chart.x * 0.95 + bend, chart.y * 0.16, 61) - 0.5;
         let fine = value(chart.x * 2.1 + bend, chart.y * 0.35, 67) - 0.5;
         // The border frays along the creases.
-        let red = ramp(0.10, 0.74, spot.red + 0.09 * crease + 0.05 * fine);
+        let red = ramp(0.02, 0.86, spot.red + 0.09 * crease + 0.05 * fine);
         if spot.red < 0.02 || spot.place.z < 60.0 {
             return c;
         }
@@ -212,7 +213,7 @@ impl Face {
         let lip = lip.lerp(CONTACT, ramp(0.10, 0.75, spot.wet) * 0.85);
         // Paler along the very border.
         let border = (-((spot.red - 0.22) / 0.13).powi(2)).exp();
-        c.lerp(lip, 0.90 * red) * (1.0 + 0.028 * border)
+        c.lerp(lip, 0.90 * red) * (1.0 + 0.010 * border)
     }
 }
 

@@ -11,7 +11,7 @@ const COLUMNS: usize = 56;
 const ROWS: usize = 12;
 /// Share of the hair's height that it reaches, and how far it starts under the skin, mm.
 const SHARE: f32 = 0.60;
-const SUNK_MM: f32 = 2.6;
+const SUNK_MM: f32 = 1.3;
 /// How much light reaches it.
 const LIGHT: f32 = 0.62;
 

@@ -70,7 +70,7 @@ const KINDS: [Kind; 5] = [
     Kind {
         tries: 2800,
         depth_mm: -2.5,
-        width_mm: [3.5, 7.0],
+        width_mm: [2.2, 4.6],
         length: [0.5, 0.85],
         layer: [0.8, 1.2],
         lift: [0.0, 0.10],
@@ -132,8 +132,9 @@ pub(super) fn grow(mesh: &mut Mesh, scalp: &Scalp) {
             let turn = i as f32 * 2.399_963 + 0.5 * dice.spread();
             let flat = (1.0 - y * y).max(0.0).sqrt();
             let root = scalp.towards(vec3(flat * turn.sin(), y, flat * turn.cos()));
-            // The edge of hair is no line.
-            let depth = scalp.depth_mm(root) + 1.5 * dice.spread();
+            // The edge of hair is no line, least of all on the forehead.
+            let front = ramp(40.0, 60.0, root.z);
+            let depth = scalp.depth_mm(root) + 1.5 * dice.spread() * front - 1.5 * (1.0 - front);
             let fringe = depth < FRINGE_MM && root.z > 45.0 && root.y > 78.0 && root.x < 36.0;
             if depth < kind.depth_mm
                 || (number == EDGE && depth > EDGE_MM)
@@ -193,7 +194,12 @@ fn card(mesh: &mut Mesh, scalp: &Scalp, kind: &Kind, root: Vec3, depth: f32, dic
         let height =
             (style::height_mm(foot, scalp) * layer * stand).max(2.2 * v) + lift * v * v + 0.3;
         let place = foot + normal * height;
-        let fan = 1.0 - 0.25 * v;
+        // Locks draw together at both ends; the dense layer hardly does.
+        let fan = if kind.columns.0 < DENSE {
+            1.0 - 0.25 * v
+        } else {
+            (0.5 + 0.5 * ramp(0.0, 0.4, v)) * (1.0 - 0.55 * v)
+        };
         for (side, u) in [(-1.0, 0.0), (1.0, 1.0)] {
             mesh.positions
                 .push(place + width_dir * (0.5 * width * side * fan));

@@ -73,7 +73,7 @@ pub(super) fn growth(p: Vec3, scalp: &Scalp) -> Growth {
         (flat + across * ((0.75 * lean + 0.5 * fine) * (0.45 + 0.55 * top))).normalize_or(flat);
 
     let long = if side < 0.0 { 52.0 - 10.0 * back } else { 36.0 };
-    let tapered = 7.0 + 17.0 * ramp(-30.0, 75.0, p.y);
+    let tapered = 9.0 + 17.0 * ramp(-30.0, 75.0, p.y);
     Growth {
         along,
         length_mm: tapered + (long - tapered) * top,
