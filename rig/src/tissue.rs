@@ -316,6 +316,8 @@ fn attach(head: &Head, vertex: usize, p: Vec3, side: Side, lid: f32) -> Vec<Atta
         let (hold, weight) = match fibre.contraction {
             // A sheet draws all the skin over it along.
             Contraction::Linear if sheet => (along.sqrt(), 0.6),
+            // What raises the corner of the mouth takes the cheek along.
+            Contraction::Linear if carries_cheek(fibre.muscle) => (along.powi(2), 0.6),
             Contraction::Linear => (along.powi(3), 0.6),
             Contraction::Sphincter { .. } => (1.0, 1.0),
             Contraction::Belly { .. } => ((std::f32::consts::PI * along).sin(), 0.6),
@@ -343,4 +345,12 @@ fn attach(head: &Head, vertex: usize, p: Vec3, side: Side, lid: f32) -> Vec<Atta
     found.sort_by(|a, b| b.0.total_cmp(&a.0));
     found.truncate(FIBRES_MAX);
     found.into_iter().map(|(_, a)| a).collect()
+}
+
+/// Whether a muscle lies in the fat of the cheek and lifts it.
+const fn carries_cheek(muscle: Muscle) -> bool {
+    matches!(
+        muscle,
+        Muscle::ZygomaticusMajor | Muscle::ZygomaticusMinor | Muscle::LevatorAnguliOris
+    )
 }

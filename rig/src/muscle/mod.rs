@@ -25,7 +25,12 @@ const LINEAR_SHORTENING: f32 = 0.36;
 const fn shortening(muscle: Muscle) -> f32 {
     match muscle {
         Muscle::FrontalisInner | Muscle::FrontalisOuter => 0.24,
-        Muscle::Platysma => 0.12,
+        Muscle::Platysma => 0.2,
+        // From bone to the corner of the mouth or beside it: longer than what it can be drawn by.
+        Muscle::ZygomaticusMajor
+        | Muscle::ZygomaticusMinor
+        | Muscle::LevatorAnguliOris
+        | Muscle::DepressorAnguliOris => 0.27,
         _ => LINEAR_SHORTENING,
     }
 }
