@@ -13,6 +13,9 @@ use serde::{Deserialize, Deserializer, Serialize};
 /// Longest landmark file: some 100 points take 10 kB.
 const MAX_BYTES: u64 = 1 << 20;
 
+/// Far beyond any scan, and its square is still finite.
+const FAR: f64 = 1e9;
+
 /// Fewest landmarks that place a head: three leave out which way it is mirrored.
 pub const MIN_LANDMARKS: usize = 4;
 
@@ -253,8 +256,11 @@ impl Landmarks {
 
     fn check_finite(&self) -> Result<(), LandmarkFault> {
         for (name, at) in &self.points {
-            // Far beyond any scan, and squares of it still are finite.
-            if let Some(value) = at.to_array().into_iter().find(|v| !(v.abs() < 1e9)) {
+            if let Some(value) = at
+                .to_array()
+                .into_iter()
+                .find(|v| v.is_nan() || v.abs() >= FAR)
+            {
                 return Err(LandmarkFault::NotFinite {
                     name: name.clone(),
                     value,

@@ -62,27 +62,15 @@ fn rotation_of(s: DMat3) -> DQuat {
     // s.col(j)[i] = sum of a_i b_j.
     let s = |i: usize, j: usize| s.col(j)[i];
     let (x, y, z) = (0, 1, 2);
-    let mut n = [
-        [
-            s(x, x) + s(y, y) + s(z, z),
-            s(y, z) - s(z, y),
-            s(z, x) - s(x, z),
-            s(x, y) - s(y, x),
-        ],
-        [
-            0.0,
-            s(x, x) - s(y, y) - s(z, z),
-            s(x, y) + s(y, x),
-            s(z, x) + s(x, z),
-        ],
-        [0.0, 0.0, s(y, y) - s(x, x) - s(z, z), s(y, z) + s(z, y)],
-        [0.0, 0.0, 0.0, s(z, z) - s(x, x) - s(y, y)],
+    let (yz, zx, xy) = (s(y, z) - s(z, y), s(z, x) - s(x, z), s(x, y) - s(y, x));
+    let (xx, yy, zz) = (s(x, x), s(y, y), s(z, z));
+    let (a, b, c) = (s(x, y) + s(y, x), s(z, x) + s(x, z), s(y, z) + s(z, y));
+    let n = [
+        [xx + yy + zz, yz, zx, xy],
+        [yz, xx - yy - zz, a, b],
+        [zx, a, yy - xx - zz, c],
+        [xy, b, c, zz - xx - yy],
     ];
-    for i in 0..4 {
-        for j in 0..i {
-            n[i][j] = n[j][i];
-        }
-    }
     let (values, vectors) = eigen(n);
     let best = (0..4)
         .max_by(|&i, &j| values[i].total_cmp(&values[j]))
@@ -111,8 +99,9 @@ pub(crate) fn eigen<const N: usize>(mut a: [[f64; N]; N]) -> ([f64; N], [[f64; N
                 for row in &mut a {
                     (row[p], row[q]) = (c * row[p] - s * row[q], s * row[p] + c * row[q]);
                 }
-                for k in 0..N {
-                    (a[p][k], a[q][k]) = (c * a[p][k] - s * a[q][k], s * a[p][k] + c * a[q][k]);
+                let (upper, lower) = a.split_at_mut(q);
+                for (x, y) in upper[p].iter_mut().zip(&mut lower[0]) {
+                    (*x, *y) = (c * *x - s * *y, s * *x + c * *y);
                 }
                 for row in &mut v {
                     (row[p], row[q]) = (c * row[p] - s * row[q], s * row[p] + c * row[q]);

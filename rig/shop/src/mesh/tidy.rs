@@ -88,7 +88,7 @@ pub(crate) fn diagonal(points: &[Vec3]) -> f32 {
 fn weld(scan: &mut Scan, dropped: &mut Dropped) {
     let (low, _) = bounds(scan.positions.iter().copied());
     let cell = diagonal(&scan.positions) * WELD;
-    if !(cell > 0.0) {
+    if cell <= 0.0 {
         return;
     }
     let mut known: HashMap<(u32, u32, u32), u32, BuildHasherDefault<Mix>> = HashMap::default();
@@ -290,7 +290,7 @@ fn measure(scan: &Scan, piece_of: &[u32], count: usize) -> Vec<Piece> {
     for (t, &piece) in scan.triangles.iter().zip(piece_of) {
         let piece = &mut pieces[piece as usize];
         let corners = t.map(|i| scan.positions[i as usize]);
-        let [a, b, c] = corners.map(|c| c.as_dvec3());
+        let [a, b, c] = corners.map(Vec3::as_dvec3);
         let area = (b - a).cross(c - a).length() / 2.0;
         let middle = (a + b + c) / 3.0;
         piece.triangles += 1;

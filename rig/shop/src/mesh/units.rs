@@ -31,6 +31,13 @@ pub(crate) struct Measured {
     pub(crate) note: Option<String>,
 }
 
+/// Landmarks times `factor`: distances to the surface, and the middle one as a share of the scan's size.
+struct Candidate {
+    factor: f64,
+    middle: f64,
+    distances: Vec<(f64, usize)>,
+}
+
 /// `points` are landmarks as given in `unit`, `reference` the same ones in mm; `given` is the scan's unit
 /// if the user said it.
 pub(crate) fn measure(
@@ -56,21 +63,29 @@ pub(crate) fn measure(
         .iter()
         .map(|mm| unit.mm() / mm)
         .filter(|k| (k - 1.0).abs() > 1e-9);
-    let mut best: Option<(f64, f64, Vec<(f64, usize)>)> = None;
+    let mut best: Option<Candidate> = None;
     for factor in std::iter::once(1.0).chain(others) {
         let distances: Vec<_> = points.iter().map(|&p| nearest.find(p * factor)).collect();
         let mut sorted: Vec<f64> = distances.iter().map(|d| d.0).collect();
         sorted.sort_by(f64::total_cmp);
         let middle = sorted[sorted.len() / 2] / size;
-        if best.as_ref().is_none_or(|b| middle < b.1) {
-            best = Some((factor, middle, distances));
+        if best.as_ref().is_none_or(|b| middle < b.middle) {
+            best = Some(Candidate {
+                factor,
+                middle,
+                distances,
+            });
         }
         if middle < NEAR {
             break;
         }
     }
     // There is always the factor 1.
-    let (factor, middle, distances) = best.ok_or(LandmarkFault::TooFew(0))?;
+    let Candidate {
+        factor,
+        middle,
+        distances,
+    } = best.ok_or(LandmarkFault::TooFew(0))?;
     let worst = (0..points.len()).max_by(|&i, &j| distances[i].0.total_cmp(&distances[j].0));
     if middle >= NEAR {
         let worst = worst.unwrap_or(0);
