@@ -19,7 +19,7 @@ fn stages(c: &mut Criterion) {
         holes: true,
         clumsy_mm: 0.5,
     };
-    let pair = Pair::new(warp(1), 3, faults);
+    let pair = Pair::new(warp(3), 3, faults);
     for n in [60, 600, 1500] {
         let step = pair.positions.len() / n;
         let pick = |list: &[Vec3]| {

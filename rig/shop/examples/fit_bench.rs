@@ -28,9 +28,9 @@ fn main() -> Result<(), Box<dyn Error>> {
     let faults = Faults {
         noise_mm: 0.15,
         holes: true,
-        clumsy_mm: 0.0,
+        clumsy_mm: 0.5,
     };
-    let mut pair = Pair::new(warp(1), 3, faults);
+    let mut pair = Pair::new(warp(3), 3, faults);
     if dir.join("scan.obj").exists() && dir.join("pairs.csv").exists() {
         pair.scan = read_obj(&dir.join("scan.obj"))?;
         pair.landmarks = read_pairs(&dir.join("pairs.csv"))?;

@@ -42,6 +42,9 @@ pub enum WarpError {
     /// The sources lie in a plane or on a line.
     #[error("all source points lie in one plane: add one in front of or behind it")]
     Flat,
+    /// All sources, or all targets, are one spot.
+    #[error("the points of one side lie all on one spot: place them where the landmarks are")]
+    OneSpot,
     /// The linear system has no finite solution.
     #[error("the point pairs define no finite warp: check for points that lie almost on one spot")]
     Singular,

@@ -1,6 +1,8 @@
 //! Synthetic round trips (HEADSHOP 6): the reference head's skin, warped by a known smooth map, scanned badly, and fitted.
 //! What is asked of every fit of the product: distances both ways, landmarks, no face turned over.
 
+#![allow(clippy::unwrap_used, reason = "tests")]
+
 #[allow(
     dead_code,
     reason = "shared with the bench and the example, each of which uses a part"
@@ -13,6 +15,7 @@ use mouthpiece_shop::fit::align::Similarity;
 use mouthpiece_shop::fit::estimate::{Source, estimate};
 use mouthpiece_shop::fit::report::{Report, Spread, report};
 use mouthpiece_shop::fit::{Fit, FitError, Options, fit};
+use mouthpiece_shop::warp::WarpError;
 use synthetic::{Faults, Pair, warp};
 
 const BAD_SCAN: Faults = Faults {
@@ -221,15 +224,23 @@ fn swapped_sides_and_landmarks_on_one_spot_are_refused() {
         fit(&pair.template(), &scan, &swapped, &options),
         Err(FitError::Mirrored)
     ));
-    let spot: Vec<(Vec3, Vec3)> = pair
-        .landmarks
-        .iter()
-        .map(|&(_, b)| (Vec3::ONE, b))
-        .collect();
-    assert!(matches!(
-        fit(&pair.template(), &scan, &spot, &options),
-        Err(FitError::Landmarks(_))
-    ));
+    let refused = |change: &dyn Fn((Vec3, Vec3)) -> (Vec3, Vec3)| {
+        let landmarks: Vec<(Vec3, Vec3)> = pair.landmarks.iter().copied().map(change).collect();
+        match fit(&pair.template(), &scan, &landmarks, &options) {
+            Err(FitError::Landmarks(why)) => why,
+            other => panic!("{other:?}"),
+        }
+    };
+    assert_eq!(refused(&|(a, _)| (a, Vec3::ONE)), WarpError::OneSpot);
+    assert_eq!(refused(&|(_, b)| (Vec3::ONE, b)), WarpError::OneSpot);
+    assert_eq!(
+        refused(&|(a, b)| (a, b * f32::NAN)),
+        WarpError::NotFinite(0)
+    );
+    assert_eq!(
+        refused(&|(a, b)| (a * Vec3::new(1.0, 1.0, 0.0), b)),
+        WarpError::Flat
+    );
 }
 
 #[test]

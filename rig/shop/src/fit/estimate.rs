@@ -55,7 +55,7 @@ pub fn estimate(sources: &[Source], scan: &Surface) -> Result<Vec<Estimate>, War
         return Err(WarpError::TooFew(known.len()));
     }
     let (mut from, mut to): (Vec<Vec3>, Vec<Vec3>) = known.into_iter().unzip();
-    let similarity = Similarity::between(&from, &to).ok_or(WarpError::Coincident(0, 1))?;
+    let similarity = Similarity::between(&from, &to).ok_or(WarpError::OneSpot)?;
     let (low, high) = sources
         .iter()
         .fold((Vec3::INFINITY, Vec3::NEG_INFINITY), |(low, high), s| {

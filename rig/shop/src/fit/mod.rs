@@ -212,8 +212,16 @@ pub fn fit(
         });
     }
     let (from, to): (Vec<Vec3>, Vec<Vec3>) = landmarks.iter().copied().unzip();
-    if align::Similarity::between(&from, &to).is_some_and(|s| s.mirrored) {
-        return Err(FitError::Mirrored);
+    if let Some(bad) = landmarks
+        .iter()
+        .position(|(a, b)| !(a.is_finite() && b.is_finite()))
+    {
+        return Err(WarpError::NotFinite(bad).into());
+    }
+    match align::Similarity::between(&from, &to) {
+        Some(similarity) if similarity.mirrored => return Err(FitError::Mirrored),
+        None if from.len() >= 4 => return Err(WarpError::OneSpot.into()),
+        _ => {}
     }
     let rest = Surface::new(template.positions, template.triangles)?;
     let places: Vec<Place> = from.iter().filter_map(|p| place(&rest, *p)).collect();
