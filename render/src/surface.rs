@@ -153,7 +153,12 @@ mod tests {
             vec3(turn.sin(), y, turn.cos()) * 90.0
         };
         let skin = &mut head.skin;
-        let chart = |i: u32| vec2(us[i as usize / 2], if i % 2 == 0 { 0.5 } else { 0.4 });
+        let chart = |i: u32| {
+            vec2(
+                us[i as usize / 2],
+                if i.is_multiple_of(2) { 0.5 } else { 0.4 },
+            )
+        };
         skin.mesh.positions = us
             .iter()
             .flat_map(|&u| [place(u, 0.0), place(u, 0.2)])
