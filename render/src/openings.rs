@@ -2,11 +2,8 @@
 //! the mouth (HABER 4.1: teeth and tongue darken as it closes) and how far the lids shade the eyes.
 
 use glam::{Vec3, Vec4, vec4};
-use mouthpiece_rig::{Head, LIP_LEVELS};
-
-/// Level of a lip's column where the lips touch; see `rig::Lips`.
-const CONTACT: usize = 3;
-const _: () = assert!(CONTACT < LIP_LEVELS);
+use mouthpiece_rig::Head;
+use mouthpiece_rig::lip_level::CONTACT;
 
 /// Which vertices to look at.
 #[derive(Clone, Debug)]
