@@ -10,6 +10,7 @@ use super::limits::{
 use super::picture::{self, Material};
 use super::polygon::triangulate;
 use super::scan::{Image, Scan, ScanColour};
+use super::text::quote;
 use super::{Reading, Side};
 
 /// A scan while it is read.
@@ -107,7 +108,8 @@ impl Builder {
         }
         let Some(bytes) = side.open(name) else {
             self.note(format!(
-                "the texture {name} is not beside the scan, so the head gets no colour from it"
+                "the texture {} is not beside the scan, so the head gets no colour from it",
+                quote(name.as_bytes())
             ));
             return Ok(None);
         };
@@ -123,7 +125,7 @@ impl Builder {
         let so_far: usize = self.pictures.iter().map(|p| p.rgb.len() / 3).sum();
         if (so_far + picture.rgb.len() / 3) as u64 > MAX_PIXELS {
             return Err(Fault::Picture {
-                name: name.to_owned(),
+                name: quote(name.as_bytes()),
                 why: format!("with it the textures have more than {MAX_PIXELS} pixels"),
             });
         }

@@ -21,7 +21,7 @@ pub(crate) fn read(bytes: &[u8], side: &dyn Side) -> Result<Builder, Found> {
         (bytes, None)
     };
     let document: Document = serde_json::from_slice(json).map_err(|e| {
-        let why = format!("its JSON is faulty ({e})");
+        let why = format!("its JSON is faulty ({})", cut(&e.to_string(), 200));
         Fault::NotThis {
             format: "glTF",
             why,
@@ -30,7 +30,7 @@ pub(crate) fn read(bytes: &[u8], side: &dyn Side) -> Result<Builder, Found> {
     if !document.asset.version.starts_with("2.") {
         let why = format!(
             "its version is `{}`, and 2.0 is read",
-            document.asset.version
+            short(&document.asset.version)
         );
         return Err(Fault::NotThis {
             format: "glTF",
@@ -40,7 +40,7 @@ pub(crate) fn read(bytes: &[u8], side: &dyn Side) -> Result<Builder, Found> {
     }
     for extension in &document.extensions_required {
         if extension.contains("compression") {
-            let found = format!("the compression {extension}");
+            let found = format!("the compression {}", short(extension));
             let mend = "export the scan without compression";
             return Err(Fault::Unsupported { found, mend }.into());
         }
@@ -103,8 +103,16 @@ fn buffers<'a>(
     Ok(buffers)
 }
 
-fn short(uri: &str) -> String {
-    uri.chars().take(60).collect()
+/// What a file says, for a message.
+fn short(text: &str) -> String {
+    cut(text, 60)
+}
+
+fn cut(text: &str, longest: usize) -> String {
+    text.chars()
+        .filter(|c| !c.is_control())
+        .take(longest)
+        .collect()
 }
 
 /// What a URI means: data inside it, or a file beside the scan.

@@ -9,7 +9,7 @@ use super::builder::{Builder, byte};
 use super::error::{Fault, Found};
 use super::limits::{MAX_CORNERS, MAX_TRIANGLES, MAX_VERTICES};
 use super::picture::Material;
-use super::text::{Lines, integer, number, words};
+use super::text::{Lines, integer, number, quote, words};
 use super::{Side, mtl};
 
 /// No texture coordinate.
@@ -167,7 +167,8 @@ impl Reader {
         }
         if found.is_empty() {
             self.out.note(format!(
-                "the materials {whole} are not beside the scan, so the head gets no texture from it"
+                "the materials {} are not beside the scan, so the head gets no texture from it",
+                quote(name)
             ));
         }
         for bytes in found {

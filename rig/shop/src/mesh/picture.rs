@@ -10,6 +10,7 @@ use zune_jpeg::zune_core::options::DecoderOptions;
 use super::error::Fault;
 use super::limits::MAX_PIXELS;
 use super::scan::Image;
+use super::text::quote;
 
 /// The picture in `bytes`, whatever its name ends in.
 pub(crate) fn decode(name: &str, bytes: &[u8]) -> Result<Image, Fault> {
@@ -21,7 +22,7 @@ pub(crate) fn decode(name: &str, bytes: &[u8]) -> Result<Image, Fault> {
         Err("it is neither PNG nor JPEG".to_owned())
     };
     read.map_err(|why| Fault::Picture {
-        name: name.to_owned(),
+        name: quote(name.as_bytes()),
         why,
     })
 }

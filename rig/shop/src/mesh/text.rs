@@ -54,7 +54,7 @@ pub(crate) fn words(line: &[u8]) -> impl Iterator<Item = &[u8]> {
 
 /// A word of a file as text for a message, cut to what one can read.
 pub(crate) fn quote(word: &[u8]) -> String {
-    const LONGEST: usize = 40;
+    const LONGEST: usize = 60;
     let text: String = String::from_utf8_lossy(word)
         .chars()
         .take(LONGEST)
