@@ -119,7 +119,6 @@ const SKIN: Recipe = Recipe {
 };
 const HAIR: Recipe = Recipe {
     vertex: "hair_vertex",
-    cull: None,
     strands: true,
     ..solid("hair")
 };

@@ -22,9 +22,13 @@ struct HairFragment {
     @location(1) light: vec3<f32>,
 }
 
-fn strand_lobe(t: vec3<f32>, h: vec3<f32>, sharp: f32) -> f32 {
+// Kajiya and Kay's highlight to the eighth power of the squared sine: sharper ones square it again.
+fn strand_lobe(t: vec3<f32>, h: vec3<f32>) -> f32 {
     let along = dot(t, h);
-    return pow(max(1.0 - along * along, 0.0), sharp);
+    let s = max(1.0 - along * along, 0.0);
+    let s2 = s * s;
+    let s4 = s2 * s2;
+    return s4 * s4;
 }
 
 @vertex
@@ -38,13 +42,17 @@ fn hair_vertex(in: PartVertex) -> HairFragment {
     let deep = in.shares.x;
     let facing = clamp(dot(n, l) * 0.65 + 0.35, 0.0, 1.0);
     let along = dot(t, l);
-    let place = shadow_place(at.world, n);
-    let key = frame.key_colour.rgb * shadow_read(place.xy, place.z);
+    // Hair lies outside all that could shade it: no look at the shadow map.
+    let key = frame.key_colour.rgb;
     let rim = frame.rim_colour.rgb * (max(dot(n, frame.rim_dir.xyz) + 0.25, 0.0) * deep);
     let rim_h = normalize(frame.rim_dir.xyz + v);
     // Scales tilt the mirror towards the root, light that went through comes out towards the tip.
-    let mirrored = strand_lobe(normalize(t - n * 0.10), h, 60.0) * facing * deep;
-    let through = strand_lobe(normalize(t + n * 0.16), h, 14.0) * facing * deep;
+    let tight = strand_lobe(normalize(t - n * 0.10), h);
+    let tight4 = tight * tight * tight * tight;
+    let lit = facing * deep;
+    let mirrored = tight4 * tight4 * lit;
+    let broad = strand_lobe(normalize(t + n * 0.16), h);
+    let through = broad * broad * lit;
 
     var out: HairFragment;
     out.clip = frame.clip_from_world * vec4(at.world, 1.0);
@@ -52,7 +60,7 @@ fn hair_vertex(in: PartVertex) -> HairFragment {
         + (frame.fill_colour.rgb * max(dot(n, frame.fill_dir.xyz) * 0.5 + 0.5, 0.0) + ambient_from(n)) * (deep * deep)
         + rim * 0.7;
     let bright = dot(key, vec3(0.3333));
-    let rim_bright = dot(rim, vec3(0.3333)) * strand_lobe(t, rim_h, 24.0);
+    let rim_bright = dot(rim, vec3(0.3333)) * strand_lobe(t, rim_h);
     out.places = vec4(in.uv, 0.075 * mirrored * bright + 0.022 * rim_bright * deep, 1.5 * through * bright);
     return out;
 }

@@ -132,7 +132,8 @@ fn skin(in: SkinFragment) -> @location(0) vec4<f32> {
     let da2 = da * da;
     let db2 = db * db;
     let lobes = (0.72 * a2 * db2 + 0.28 * b2 * da2) / (da2 * db2);
-    let oiled = 0.25 + 1.2 * oil;
+    // Painted hair does not shine like skin.
+    let oiled = (0.25 + 1.2 * oil) * min(9.0 * albedo.g, 1.0);
     let strength = 0.028 * frame.half_key.w * oiled * (0.35 + 0.65 * in.shares.z);
     light += frame.key_colour.rgb * (strength * lobes * max(bumped_cos, 0.0) * reached);
     light += vec3(in.normal.w * oiled);
