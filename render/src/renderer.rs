@@ -12,7 +12,7 @@ use crate::openings::Openings;
 use crate::pipelines::{Layouts, Pipelines};
 use crate::surface::SkinGeometry;
 use crate::targets::Targets;
-use crate::tier::{Detail, Tier};
+use crate::tier::Tier;
 use crate::upload;
 use crate::view::{Extent, View};
 
@@ -34,7 +34,6 @@ pub struct Renderer {
     pose: Head,
     extent: Extent,
     openings: Openings,
-    detail: Detail,
     format: wgpu::TextureFormat,
     samples: u32,
     skin: SkinGeometry,
@@ -121,7 +120,6 @@ impl Renderer {
             pose,
             extent: Extent::of(head),
             openings: Openings::of(head, skin.points()),
-            detail,
             format,
             samples,
             skin,

@@ -92,6 +92,6 @@ fn strands(field: &mut Field<3>, column: usize) {
             half_width: (wide * (0.6 + 0.8 * dice.roll()) * size.x).max(0.5),
             strength: [tone.clamp(0.0, 1.0), dice.roll(), 1.0],
         };
-        field.draw(&stroke, Blend::Strand);
+        field.draw(&stroke, Blend::Over);
     }
 }

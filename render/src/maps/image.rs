@@ -59,10 +59,3 @@ pub(crate) fn root_of_linear(value: f32) -> u8 {
     // sqrt(x^2.2) is x^1.1; close to sRGB's curve and smooth at zero.
     (value.clamp(0.0, 1.0).powf(1.1) * 255.0 + 0.5) as u8
 }
-
-/// [`root_of_linear`] as a table of 1024 steps.
-pub(crate) fn root_table() -> Vec<u8> {
-    (0..1024)
-        .map(|i| root_of_linear(i as f32 / 1023.0))
-        .collect()
-}

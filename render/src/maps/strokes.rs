@@ -1,4 +1,4 @@
-//! Hairs as tapered strokes: brows on the face, the flow of the hair's map, veins of the eye.
+//! Tapered strokes: strands of the hair's map, veins of the eye.
 
 use glam::Vec2;
 
@@ -25,10 +25,8 @@ pub(crate) struct Stroke<const N: usize> {
 pub(crate) enum Blend {
     /// Covers what is left uncovered.
     Cover,
-    /// Replaces what lies under it.
+    /// Replaces what lies under it, without fading along its length.
     Over,
-    /// Replaces what lies under it without fading along its length; the last value is its cover.
-    Strand,
 }
 
 impl<const N: usize> Field<N> {
@@ -57,7 +55,7 @@ impl<const N: usize> Field<N> {
             self.dab(
                 p,
                 stroke.half_width * taper,
-                if blend == Blend::Strand {
+                if blend == Blend::Over {
                     stroke.strength
                 } else {
                     stroke.strength.map(|s| s * fade)
@@ -87,7 +85,7 @@ impl<const N: usize> Field<N> {
                 for (value, strength) in value.iter_mut().zip(strength) {
                     match blend {
                         Blend::Cover => *value = value.max(cover * strength),
-                        Blend::Over | Blend::Strand => *value += (strength - *value) * cover,
+                        Blend::Over => *value += (strength - *value) * cover,
                     }
                 }
             }
