@@ -21,15 +21,17 @@ fn stages(c: &mut Criterion) {
     };
     let pair = Pair::new(warp(3), 3, faults);
     for n in [60, 600, 1500] {
-        let step = pair.positions.len() / n;
-        let pick = |list: &[Vec3]| {
-            list.iter()
-                .copied()
-                .step_by(step)
-                .take(n)
-                .collect::<Vec<_>>()
+        // In the open, where no two vertices meet.
+        let free = |list: &[Vec3]| -> Vec<Vec3> {
+            let free = list
+                .iter()
+                .zip(&pair.freedom)
+                .filter(|(_, f)| **f >= 1.0)
+                .map(|(p, _)| *p);
+            let step = pair.freedom.iter().filter(|f| **f >= 1.0).count() / n;
+            free.step_by(step.max(1)).take(n).collect()
         };
-        let (from, to) = (pick(&pair.positions), pick(&pair.truth));
+        let (from, to) = (free(&pair.positions), free(&pair.truth));
         c.bench_function(&format!("warp/solve {n}"), |b| {
             b.iter(|| Warp::smoothed(black_box(&from), &to, &vec![1.0; n]));
         });

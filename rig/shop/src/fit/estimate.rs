@@ -45,13 +45,13 @@ pub struct Estimate {
     pub on_scan: bool,
 }
 
-/// Places every landmark, given at least four that do not lie in one plane or three others and a similarity.
+/// Places every landmark, given at least three that do not lie on one line: the box makes a warp even of those.
 pub fn estimate(sources: &[Source], scan: &Surface) -> Result<Vec<Estimate>, WarpError> {
     let known: Vec<(Vec3, Vec3)> = sources
         .iter()
         .filter_map(|s| s.known.map(|to| (s.at, to)))
         .collect();
-    if known.len() < 4 {
+    if known.len() < 3 {
         return Err(WarpError::TooFew(known.len()));
     }
     let (mut from, mut to): (Vec<Vec3>, Vec<Vec3>) = known.into_iter().unzip();

@@ -67,9 +67,9 @@ pub struct Options {
 impl Default for Options {
     fn default() -> Self {
         Self {
-            rounds: 3,
+            rounds: 4,
             give_mm: (0.5, 4.0),
-            local_rounds: 6,
+            local_rounds: 4,
             reach_mm: (6.0, 2.5),
             stiffness: (20.0, 2.0),
             iterations: 30,

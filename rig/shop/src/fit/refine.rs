@@ -16,7 +16,7 @@ use crate::closest::{Facing, Surface};
 use crate::warp::Warp;
 
 /// Triangles with shorter edges on average than this are fine enough, mm: the local fit does the rest.
-const FINE_MM: f32 = 7.0;
+const FINE_MM: f32 = 8.0;
 
 /// How far a new vertex may look, as a share of its triangle's mean edge, and within which bounds, mm.
 const REACH: f32 = 0.4;
@@ -33,6 +33,9 @@ const APART_MM: f32 = 1.5;
 
 /// Converged when new pairs were this near to the warped template on average, mm.
 const SETTLED_MM: f32 = 0.15;
+
+/// With this many pairs the local fit does better than another round, and the cost of a warp grows with their cube.
+const ENOUGH: usize = 300;
 
 /// A face turned beyond this (cosine) condemns the pairs around it.
 const TURNING: f32 = 0.2;
@@ -113,7 +116,7 @@ pub(crate) fn refine(
             .sum::<f32>()
             / (pairs.from.len() - before) as f32;
         warp = solve(template, &mut pairs, before, should, &mut positions, warp)?;
-        if gap < SETTLED_MM {
+        if gap < SETTLED_MM || pairs.from.len() >= ENOUGH {
             break;
         }
     }
