@@ -7,8 +7,10 @@ pub mod colour;
 pub mod fit;
 pub mod hair;
 pub mod landmarks;
+pub mod marking;
 pub mod mesh;
 pub mod muscles;
+pub mod refit;
 pub mod sculpt;
 pub mod warp;
 
