@@ -25,6 +25,9 @@ const SLACK: f32 = 0.12;
 const MUSCLE_RATE: f32 = 170.0;
 const JAW_RATE: f32 = 130.0;
 const HEAD_RATE: f32 = 40.0;
+/// A control nearer to 0 than this does nothing, and a fibre's point nearer to rest than so many mm.
+const STILL: f32 = 1e-6;
+const STILL_MM: f32 = 1e-5;
 /// The lids aim past each other by this factor, since the skin round them holds them back.
 const LID_OVERSHOOT: f32 = 1.22;
 
@@ -219,12 +222,14 @@ impl Simulation {
 
     /// Displaces all fibres' control points.
     fn contract(&mut self, mandible: &Affine3A) {
+        let jaw_still = self.state[Control::Jaw].abs() < STILL;
         for (k, fibre) in self.head.fibres.iter().enumerate() {
-            fibre.contracted(
-                &self.state,
-                mandible,
-                &mut self.points[self.starts[k]..self.starts[k + 1]],
-            );
+            let range = self.starts[k]..self.starts[k + 1];
+            if fibre.rests(&self.state, jaw_still, STILL) {
+                self.points[range.clone()].copy_from_slice(&self.rest_points[range]);
+            } else {
+                fibre.contracted(&self.state, mandible, &mut self.points[range]);
+            }
         }
         for merge in &self.merges {
             let end = self.starts[merge.puller + 1] - 1;
@@ -260,10 +265,20 @@ impl Simulation {
             self.force[i as usize] += (mandible.transform_point3a(rest) - rest) * stiffness;
         }
         let scale = self.muscle_stiffness;
-        for a in &self.tissue.attachments {
-            let j = self.starts[a.fibre as usize] + a.point as usize;
-            let shift = self.shift[j].lerp(self.shift[j + 1], a.share);
-            self.force[a.vertex as usize] += shift * (a.stiffness * scale);
+        for (k, range) in self.tissue.fibres.windows(2).enumerate() {
+            // Most muscles rest most of the time: nothing of theirs pulls.
+            let moved = &self.shift[self.starts[k]..self.starts[k + 1]];
+            if moved
+                .iter()
+                .all(|s| s.length_squared() < STILL_MM * STILL_MM)
+            {
+                continue;
+            }
+            for a in &self.tissue.attachments[range[0] as usize..range[1] as usize] {
+                let j = a.point as usize;
+                let shift = moved[j].lerp(moved[j + 1], a.share);
+                self.force[a.vertex as usize] += shift * (a.stiffness * scale);
+            }
         }
         for &(i, k, stiffness) in &self.tissue.lids {
             let lid = self.head.lids[k as usize];

@@ -66,7 +66,9 @@ pub(crate) struct Tissue {
     pub bone: Vec<f32>,
     /// Vertices that the mandible takes along, with its share of that stiffness.
     pub jawed: Vec<(u32, f32)>,
+    /// By fibre, and where each fibre's start among them.
     pub attachments: Vec<Attachment>,
+    pub fibres: Vec<u32>,
     /// `(simulated vertex, index into Head::lids, stiffness)`.
     pub lids: Vec<(u32, u32, f32)>,
 }
@@ -130,11 +132,15 @@ impl Tissue {
         for lid in &head.lids {
             lid_hold[lid.vertex as usize] = lid.hold;
         }
-        let attachments = (0..movable)
+        let mut attachments: Vec<Attachment> = (0..movable)
             .flat_map(|i| {
                 let vertex = vertices[i] as usize;
                 attach(head, i, rest[vertex], sides[vertex], lid_hold[vertex])
             })
+            .collect();
+        attachments.sort_by_key(|a| a.fibre);
+        let fibres = (0..=head.fibres.len() as u32)
+            .map(|k| attachments.partition_point(|a| a.fibre < k) as u32)
             .collect();
         let lids = head
             .lids
@@ -170,6 +176,7 @@ impl Tissue {
             edges,
             starts,
             attachments,
+            fibres,
             lids,
         }
     }
@@ -316,11 +323,18 @@ fn attach(head: &Head, vertex: usize, p: Vec3, side: Side, lid: f32) -> Vec<Atta
         let (hold, weight) = match fibre.contraction {
             // A sheet draws all the skin over it along.
             Contraction::Linear if sheet => (along.sqrt(), 0.6),
+            // Those of the frown are short and end in the skin itself.
+            Contraction::Linear if frowns(fibre.muscle) => (along.powi(2), 1.2),
             // What raises the corner of the mouth takes the cheek along.
             Contraction::Linear if carries_cheek(fibre.muscle) => (along.powi(2), 0.6),
             Contraction::Linear => (along.powi(3), 0.6),
             Contraction::Sphincter { .. } => (1.0, 1.0),
             Contraction::Belly { .. } => ((std::f32::consts::PI * along).sin(), 0.6),
+        };
+        let least = if fibre.muscle as usize >= Muscle::FrontalisInner as usize {
+            0.015
+        } else {
+            0.004
         };
         // What a lid carries is the lid's: the muscles of the brow end over it.
         let hold = if fibre.muscle as usize >= Muscle::FrontalisInner as usize {
@@ -329,7 +343,7 @@ fn attach(head: &Head, vertex: usize, p: Vec3, side: Side, lid: f32) -> Vec<Atta
             hold
         };
         let stiffness = FIBRE * weight * hold * near * near;
-        if stiffness > 0.004 * FIBRE {
+        if stiffness > least * FIBRE {
             found.push((
                 stiffness,
                 Attachment {
@@ -352,5 +366,13 @@ const fn carries_cheek(muscle: Muscle) -> bool {
     matches!(
         muscle,
         Muscle::ZygomaticusMajor | Muscle::ZygomaticusMinor | Muscle::LevatorAnguliOris
+    )
+}
+
+/// Whether a muscle ends in the skin of the brow and draws it together or down.
+const fn frowns(muscle: Muscle) -> bool {
+    matches!(
+        muscle,
+        Muscle::CorrugatorSupercilii | Muscle::Procerus | Muscle::DepressorSupercilii
     )
 }

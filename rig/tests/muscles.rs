@@ -131,7 +131,7 @@ const DEEDS: [(Muscle, &str, [f32; 3], [f32; 3], f32); 31] = [
         "chin",
         [7.0, -63.0, 110.0],
         [0.0, 1.0, 0.0],
-        1.5,
+        0.8,
     ),
     (
         Muscle::FrontalisInner,
@@ -226,10 +226,10 @@ const DEEDS: [(Muscle, &str, [f32; 3], [f32; 3], f32); 31] = [
     ),
     (
         Muscle::Platysma,
-        "corner of the mouth",
-        [25.4, -35.5, 101.9],
+        "skin under the corner of the mouth",
+        [31.0, -47.0, 95.0],
         [0.2, -1.0, 0.0],
-        2.0,
+        1.0,
     ),
     (
         Muscle::Platysma,

@@ -8,13 +8,11 @@
 
 mod grid;
 mod merge;
-mod table;
 
 use glam::{Affine3A, Vec3, vec3};
 
 pub use grid::{Axis, GridPoint, MuscleGrid, Space, rebuild};
 pub(crate) use merge::{Merge, merges};
-pub(crate) use table::fibres;
 
 use crate::{Control, Controls, Muscle};
 
@@ -109,6 +107,19 @@ impl Fibre {
                 }
             }
         }
+    }
+
+    /// Whether nothing moves it: no contraction or protrusion of its muscle beyond `still`, and, where it
+    /// hangs on the mandible, no motion of the jaw.
+    pub(crate) fn rests(&self, controls: &Controls, jaw_still: bool, still: f32) -> bool {
+        let protrudes = |control| controls[control].abs() >= still;
+        let active = controls[Control::contraction(self.muscle)].abs() >= still
+            || match self.muscle {
+                Muscle::OrbicularisOrisSuperior => protrudes(Control::ProtrusionSuperior),
+                Muscle::OrbicularisOrisInferior => protrudes(Control::ProtrusionInferior),
+                _ => false,
+            };
+        !active && (jaw_still || self.mandible.iter().all(|share| *share == 0.0))
     }
 
     /// A curved fibre under tension approaches the straight line between its ends (HABER 5.1).
