@@ -16,8 +16,6 @@ use serde::{Deserialize, Serialize};
 
 use crate::{Articulation, Control, Controls, Head, KeyFrame, Simulation, measure};
 
-const REFERENCE: &str = include_str!("../data/calibration.json");
-
 /// What is solved for, and the range the fit is sound in.
 const SOLVED: [(Control, f32, f32); 7] = [
     (Control::OrbicularisOrisSuperior, 0.0, 0.9),
@@ -74,22 +72,6 @@ pub struct Calibration {
 }
 
 impl Calibration {
-    /// The reference head's, from the crate's own data.
-    ///
-    /// # Errors
-    /// Only where that data is damaged.
-    pub fn reference() -> Result<Self, CalibrationError> {
-        Self::from_json(REFERENCE)
-    }
-
-    /// Reads one.
-    ///
-    /// # Errors
-    /// Where the text is no calibration of this version.
-    pub fn from_json(text: &str) -> Result<Self, CalibrationError> {
-        serde_json::from_str::<Self>(text)?.checked()
-    }
-
     /// Itself, when it is one that this version can work with.
     pub(crate) fn checked(self) -> Result<Self, CalibrationError> {
         if let Some(q) = self.quadratics.iter().find(|q| q.len() != TERMS) {
@@ -101,6 +83,21 @@ impl Calibration {
         } else {
             Err(CalibrationError::Number)
         }
+    }
+
+    /// This one for a mouth of another width at rest: its answers in width are in proportion, the others stay. For a
+    /// head fitted from the one that this was measured on; [`Self::fit`] is exact.
+    #[must_use]
+    pub fn for_width(&self, rest_width_mm: f32) -> Self {
+        let mut other = self.clone();
+        let ratio = rest_width_mm / self.rest_width_mm;
+        if ratio.is_finite() && ratio > 0.0 {
+            other.rest_width_mm = rest_width_mm;
+            for term in &mut other.quadratics[1] {
+                *term *= ratio;
+            }
+        }
+        other
     }
 
     /// Fits `head`: some seconds of work.
