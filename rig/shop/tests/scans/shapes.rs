@@ -9,7 +9,7 @@ const COLUMNS: u32 = 80;
 
 /// The made-up head in the direction (longitude from the front to the left, latitude), mm: an egg
 /// with a nose and a chin, mirror-symmetric.
-pub fn head_at(longitude: f32, latitude: f32) -> Vec3 {
+pub(crate) fn head_at(longitude: f32, latitude: f32) -> Vec3 {
     let (sin_u, cos_u) = longitude.sin_cos();
     let (sin_v, cos_v) = latitude.sin_cos();
     let egg = vec3(72.0 * cos_v * sin_u, 115.0 * sin_v, 92.0 * cos_v * cos_u);
@@ -27,12 +27,12 @@ pub fn head_at(longitude: f32, latitude: f32) -> Vec3 {
 }
 
 /// The head as a scan without its neck: open below.
-pub fn head() -> Scan {
+pub(crate) fn head() -> Scan {
     patch(-0.9, 1.55, std::f32::consts::PI)
 }
 
 /// The face alone: no back of the head.
-pub fn mask() -> Scan {
+pub(crate) fn mask() -> Scan {
     patch(-0.9, 0.9, 1.3)
 }
 
@@ -66,7 +66,7 @@ fn patch(low: f32, high: f32, side: f32) -> Scan {
 /// Names and directions of landmarks on the made-up head.
 const PLACES: [(&str, f32, f32); 16] = [
     ("v", 0.0, 1.5),
-    ("op", 3.14, 0.2),
+    ("op", std::f32::consts::PI, 0.2),
     ("n", 0.0, 0.25),
     ("prn", 0.0, -0.1),
     ("sn", 0.0, -0.25),
@@ -84,7 +84,7 @@ const PLACES: [(&str, f32, f32); 16] = [
 ];
 
 /// The landmarks of the reference head: like the scan's, a little larger, and narrower.
-pub fn reference() -> Vec<ReferencePoint> {
+pub(crate) fn reference() -> Vec<ReferencePoint> {
     let point = |&(name, u, v): &(&str, f32, f32)| {
         let at = head_at(u, v);
         let step = 0.01;
@@ -106,7 +106,7 @@ pub fn reference() -> Vec<ReferencePoint> {
 }
 
 /// Landmarks on the scan itself, mm.
-pub fn landmarks() -> Landmarks {
+pub(crate) fn landmarks() -> Landmarks {
     let point = |&(name, u, v): &(&str, f32, f32)| (name.to_owned(), head_at(u, v).as_dvec3());
     Landmarks {
         unit: Unit::Millimetre,
@@ -115,14 +115,14 @@ pub fn landmarks() -> Landmarks {
 }
 
 /// Some of them.
-pub fn only(names: &[&str]) -> Landmarks {
+pub(crate) fn only(names: &[&str]) -> Landmarks {
     let mut all = landmarks();
     all.points.retain(|name, _| names.contains(&name.as_str()));
     all
 }
 
 /// `scan` and `landmarks` moved alike.
-pub fn moved(scan: &Scan, landmarks: &Landmarks, by: impl Fn(DVec3) -> DVec3) -> (Scan, Landmarks) {
+pub(crate) fn moved(scan: &Scan, landmarks: &Landmarks, by: impl Fn(DVec3) -> DVec3) -> (Scan, Landmarks) {
     let (mut scan, mut landmarks) = (scan.clone(), landmarks.clone());
     for p in &mut scan.positions {
         *p = by(p.as_dvec3()).as_vec3();
@@ -134,7 +134,7 @@ pub fn moved(scan: &Scan, landmarks: &Landmarks, by: impl Fn(DVec3) -> DVec3) ->
 }
 
 /// Both in one.
-pub fn joined(mut first: Scan, second: &Scan) -> Scan {
+pub(crate) fn joined(mut first: Scan, second: &Scan) -> Scan {
     let base = first.positions.len() as u32;
     first.positions.extend(&second.positions);
     first

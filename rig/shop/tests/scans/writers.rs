@@ -4,9 +4,10 @@
 use std::fmt::Write;
 use std::io::Cursor;
 
+use glam::Vec3;
 use mouthpiece_shop::mesh::{Image, Scan};
 
-pub fn obj(scan: &Scan) -> Vec<u8> {
+pub(crate) fn obj(scan: &Scan) -> Vec<u8> {
     let mut text = String::from("# a scan\no head\n");
     for p in &scan.positions {
         writeln!(text, "v {} {} {}", p.x, p.y, p.z).unwrap();
@@ -19,14 +20,14 @@ pub fn obj(scan: &Scan) -> Vec<u8> {
 }
 
 #[derive(Clone, Copy, Debug)]
-pub enum Ply {
+pub(crate) enum Ply {
     Text,
     Little,
     Big,
 }
 
 /// With foreign properties before, between and after; `double` coordinates where asked.
-pub fn ply(scan: &Scan, kind: Ply, double: bool, colours: Option<&[[u8; 3]]>) -> Vec<u8> {
+pub(crate) fn ply(scan: &Scan, kind: Ply, double: bool, colours: Option<&[[u8; 3]]>) -> Vec<u8> {
     let format = match kind {
         Ply::Text => "ascii",
         Ply::Little => "binary_little_endian",
@@ -115,7 +116,7 @@ impl Body {
     }
 }
 
-pub fn stl(scan: &Scan) -> Vec<u8> {
+pub(crate) fn stl(scan: &Scan) -> Vec<u8> {
     let mut out = b"solid in name only".to_vec();
     out.resize(80, b' ');
     out.extend((scan.triangles.len() as u32).to_le_bytes());
@@ -134,7 +135,7 @@ pub fn stl(scan: &Scan) -> Vec<u8> {
     out
 }
 
-pub fn stl_text(scan: &Scan) -> Vec<u8> {
+pub(crate) fn stl_text(scan: &Scan) -> Vec<u8> {
     let mut out = String::from("solid head\r\n");
     for t in &scan.triangles {
         out += "  facet normal 0 0 0\r\n    outer loop\r\n";
@@ -150,15 +151,15 @@ pub fn stl_text(scan: &Scan) -> Vec<u8> {
 
 /// What a GLB holds besides the triangles.
 #[derive(Default)]
-pub struct Extra {
+pub(crate) struct Extra {
     /// JSON members of the node.
-    pub node: String,
-    pub colours: Option<Vec<[u8; 3]>>,
+    pub(crate) node: String,
+    pub(crate) colours: Option<Vec<[u8; 3]>>,
     /// A PNG and one coordinate per vertex.
-    pub texture: Option<(Vec<u8>, Vec<[f32; 2]>)>,
+    pub(crate) texture: Option<(Vec<u8>, Vec<[f32; 2]>)>,
 }
 
-pub fn glb(scan: &Scan, extra: &Extra) -> Vec<u8> {
+pub(crate) fn glb(scan: &Scan, extra: &Extra) -> Vec<u8> {
     let (mut bin, mut views, mut accessors) = (Vec::new(), Vec::new(), Vec::new());
     let mut add = |bytes: Vec<u8>, accessor: Option<(u32, usize, &str)>| {
         let view = views.len();
@@ -179,7 +180,7 @@ pub fn glb(scan: &Scan, extra: &Extra) -> Vec<u8> {
     };
     let n = scan.positions.len();
     let floats = |v: &[f32]| v.iter().flat_map(|c| c.to_le_bytes()).collect::<Vec<u8>>();
-    let positions: Vec<f32> = scan.positions.iter().flat_map(|p| p.to_array()).collect();
+    let positions: Vec<f32> = scan.positions.iter().flat_map(Vec3::to_array).collect();
     add(floats(&positions), Some((5126, n, "VEC3")));
     let indices = scan
         .triangles
@@ -231,7 +232,7 @@ pub fn glb(scan: &Scan, extra: &Extra) -> Vec<u8> {
 }
 
 /// A GLB of these chunks.
-pub fn container(json: &str, bin: &[u8]) -> Vec<u8> {
+pub(crate) fn container(json: &str, bin: &[u8]) -> Vec<u8> {
     let mut json = json.as_bytes().to_vec();
     json.resize(json.len().next_multiple_of(4), b' ');
     let total = 12 + 8 + json.len() + 8 + bin.len();
@@ -246,7 +247,7 @@ pub fn container(json: &str, bin: &[u8]) -> Vec<u8> {
     out
 }
 
-pub fn png(image: &Image) -> Vec<u8> {
+pub(crate) fn png(image: &Image) -> Vec<u8> {
     let mut out = Cursor::new(Vec::new());
     let mut encoder = png::Encoder::new(&mut out, image.width, image.height);
     encoder.set_color(png::ColorType::Rgb);
