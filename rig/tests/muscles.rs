@@ -40,8 +40,11 @@ fn vertex(place: Vec3) -> usize {
         .unwrap_or(0)
 }
 
-/// Of the left side, in mm: a muscle, what it moves (a place on the reference head), where to, and by how much at least.
-const DEEDS: [(Muscle, &str, [f32; 3], [f32; 3], f32); 31] = [
+/// A muscle, what it moves (a place on the reference head, mm), which way, and by how much at least, mm.
+type Deed = (Muscle, &'static str, [f32; 3], [f32; 3], f32);
+
+/// Of the left side; the right one mirrors it.
+const DEEDS: [Deed; 31] = [
     (
         Muscle::OrbicularisOrisSuperior,
         "corner of the mouth",
