@@ -46,26 +46,28 @@ def judge(vertices, template, warped, scan, face, scan_points):
 
 
 def amberg(template, warped, scan, pairs):
-    vertices = nearest(template, pairs[:, :3])
-    return scaled(scan, lambda m, s, t: trimesh.registration.nricp_amberg(m, s, vertices, t), warped, pairs)
+    return scaled(trimesh.registration.nricp_amberg, template, warped, scan, pairs)
 
 
 def sumner(template, warped, scan, pairs):
-    vertices = nearest(template, pairs[:, :3])
-    return scaled(scan, lambda m, s, t: trimesh.registration.nricp_sumner(m, s, vertices, t), warped, pairs)
+    return scaled(trimesh.registration.nricp_sumner, template, warped, scan, pairs)
 
 
 def nearest(mesh, points):
     return np.array([np.argmin(((mesh.vertices - p) ** 2).sum(1)) for p in points])
 
 
-def scaled(scan, run, warped, pairs):
-    """trimesh's thresholds are for meshes of about unit size."""
+def scaled(run, template, warped, scan, pairs):
+    """trimesh's thresholds are for meshes of about unit size, and its systems for meshes without loose vertices."""
     middle, size = scan.centroid, scan.scale
     unit = lambda v: (np.asarray(v) - middle) / size  # noqa: E731
-    mesh = trimesh.Trimesh(unit(warped.vertices), warped.faces, process=False)
+    used = warped.referenced_vertices
+    new = np.cumsum(used) - 1
+    mesh = trimesh.Trimesh(unit(warped.vertices)[used], new[warped.faces], process=False)
     target = trimesh.Trimesh(unit(scan.vertices), scan.faces, process=False)
-    return np.asarray(run(mesh, target, unit(pairs[:, 3:]))) * size + middle
+    fitted = np.array(warped.vertices)
+    fitted[used] = run(mesh, target, new[nearest(template, pairs[:, :3])], unit(pairs[:, 3:])) * size + middle
+    return fitted
 
 
 def monk(template, warped, scan, pairs):
