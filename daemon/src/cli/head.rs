@@ -3,11 +3,13 @@
 use std::path::PathBuf;
 
 use clap::{Args, Subcommand};
+use mouthpiece_shop::landmarks::Unit;
 
 /// The head shop: what is in a head file, and how its mouth answers
 #[derive(Debug, Subcommand)]
 pub enum HeadCommand {
     Info(InfoArgs),
+    Fit(FitArgs),
     Calibrate(CalibrateArgs),
 }
 
@@ -26,10 +28,42 @@ pub struct InfoArgs {
     pub json: bool,
 }
 
+/// Make a head of a scan: OBJ, PLY, STL or GLB, with at least four landmarks on it
+#[derive(Debug, Args)]
+#[command(
+    after_help = "Landmarks are JSON, in the scan's own coordinates: {\"unit\": \"mm\", \"points\": {\"prn\": [x, y, z], \"en_l\": …}};\n\
+                  _l and _r are the subject's left and right, `head info` lists the names. Those left out are estimated.\n\n\
+                  Examples:\n  mouthpiece head fit anna.ply --landmarks anna.json -o anna.glb\n  \
+                  mouthpiece head fit anna.obj --landmarks anna.json -o anna.glb --unit m --report anna-fit.json"
+)]
+pub struct FitArgs {
+    /// The scan
+    #[arg(value_name = "SCAN")]
+    pub scan: PathBuf,
+    /// Where on the scan its landmarks lie
+    #[arg(long, value_name = "L.json")]
+    pub landmarks: PathBuf,
+    /// Where to write the new head
+    #[arg(short, long, value_name = "NEW.glb")]
+    pub output: PathBuf,
+    /// Where to write how good the fit is, as JSON
+    #[arg(long, value_name = "R.json")]
+    pub report: Option<PathBuf>,
+    /// Unit of the scan: mm, cm, m or in [default: by the landmarks]
+    #[arg(long, value_name = "UNIT")]
+    pub unit: Option<Unit>,
+    /// The head that is bent to the scan [default: the built-in head]
+    #[arg(long, value_name = "REF.glb")]
+    pub head: Option<PathBuf>,
+    /// Print the report as JSON
+    #[arg(long)]
+    pub json: bool,
+}
+
 /// Measure how a head's mouth answers to its muscles, so that speech shapes it rightly
 #[derive(Debug, Args)]
 #[command(
-    after_help = "`mouthpiece head fit` does this already; a head that another program has changed may need it.\n\n\
+    after_help = "`mouthpiece head fit` carries the reference head's over, scaled to the new mouth; measured, it is exact.\n\n\
                   Example:\n  mouthpiece head calibrate anna.glb -o anna-calibrated.glb"
 )]
 pub struct CalibrateArgs {

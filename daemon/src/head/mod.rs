@@ -1,6 +1,7 @@
 //! `mouthpiece head …`: the head shop's commands.
 
 mod calibrate;
+mod fit;
 mod info;
 
 use crate::cli::HeadCommand;
@@ -9,6 +10,7 @@ use crate::cli::HeadCommand;
 pub fn run(command: &HeadCommand) -> anyhow::Result<()> {
     match command {
         HeadCommand::Info(args) => info::run(args),
+        HeadCommand::Fit(args) => fit::run(args),
         HeadCommand::Calibrate(args) => calibrate::run(args),
     }
 }
