@@ -107,7 +107,7 @@ fn posed(head: &Arc<Head>, mouth: [f32; 4], rest: [f32; 3]) -> Result<KeyFrame, 
         protrusion_mm,
         ..Articulation::REST
     };
-    let mut controls = Calibration::reference()?.controls(&articulation);
+    let mut controls = head.calibration.controls(&articulation);
     controls[Control::LidL] = rest[0];
     controls[Control::LidR] = rest[0];
     controls[Control::GazeYaw] = rest[1];

@@ -1,6 +1,7 @@
 //! Contact: lips stop each other, lips stay in front of the teeth, lids stay outside the eyeballs.
 //!
-//! Resolved on positions after each step (and on velocities with them, without rebound). Lips are
+//! Resolved on positions after each step (and on velocities with them, without rebound), for the surface
+//! as it is drawn: each vertex is taken to be drawn where it is at rest, beside itself. Lips are
 //! compared column by column: both lips' columns were built over one another, and the muscles move
 //! them sideways together.
 
@@ -15,6 +16,8 @@ use crate::{Eye, Head, Placement};
 const TOUCHING: std::ops::RangeInclusive<usize> = CREST..=LIP_LEVELS - 1;
 /// Share of an overlap that one pass removes; two passes run.
 const PASS_SHARE: f32 = 0.5;
+/// So little an overlap counts as touching, mm: lips that meet at rest do not press.
+const SLOP_MM: f32 = 0.02;
 /// Skin keeps this far from the teeth, and lids from the eyeballs, mm.
 const TEETH_CLEARANCE_MM: f32 = 0.4;
 const EYE_CLEARANCE_MM: f32 = 0.05;
@@ -28,6 +31,8 @@ pub(crate) struct Contact {
     lids: [Vec<u32>; 2],
     eyes: [Eye; 2],
     bite: Placement,
+    /// Per vertex that moves: from it to where it is drawn at rest.
+    drawn: Vec<Vec3A>,
 }
 
 /// The skin's state that contact corrects.
@@ -59,7 +64,14 @@ impl Contact {
         for lid in &head.lids {
             lids[usize::from(!lid.left)].extend(tissue.moving(lid.vertex));
         }
+        let rest = &head.skin.mesh.positions;
+        let drawn = head.drawn_rest();
+        let drawn = tissue.vertices[..tissue.movable]
+            .iter()
+            .map(|&v| Vec3A::from(drawn[v as usize] - rest[v as usize]))
+            .collect();
         Self {
+            drawn,
             columns,
             lids,
             eyes: head.eyes,
@@ -82,9 +94,9 @@ impl Contact {
                 // Alternate who is tested against whom, so that neither lip wins.
                 for turn in 0..2 {
                     if (turn + pass) % 2 == 0 {
-                        press(skin, lower, upper, 1.0);
+                        self.press(skin, lower, upper, 1.0);
                     } else {
-                        press(skin, upper, lower, -1.0);
+                        self.press(skin, upper, lower, -1.0);
                     }
                 }
             }
@@ -97,7 +109,7 @@ impl Contact {
         for (upper, lower) in &self.columns {
             for &i in upper[CREST + 1..].iter().chain(&lower[CREST + 1..]) {
                 let i = i as usize;
-                let p = skin.position[i];
+                let p = skin.position[i] + self.drawn[i];
                 // The arches are described where they stand on the reference head.
                 let q = self.bite.reference(p.into());
                 let up = in_front(q, UPPER_EDGE_Y, 14.0, UPPER_FRONT_Z);
@@ -118,13 +130,52 @@ impl Contact {
             let least = eye.radius + EYE_CLEARANCE_MM;
             for &i in list {
                 let i = i as usize;
-                let out = skin.position[i] - centre;
+                let out = skin.position[i] + self.drawn[i] - centre;
                 let distance = out.length();
                 if distance < least && distance > 1.0 {
                     let normal = out / distance;
-                    skin.position[i] = centre + normal * least;
+                    skin.position[i] = centre + normal * least - self.drawn[i];
                     let inwards = skin.velocity[i].dot(normal).min(0.0);
                     skin.velocity[i] -= normal * inwards;
+                }
+            }
+        }
+    }
+
+    /// Pushes each touching vertex of `a` out of the chain `b`; `sense` is 1 where `a` lies below `b`.
+    fn press(
+        &self,
+        skin: &mut Bodies<'_>,
+        a: &[u32; LIP_LEVELS],
+        b: &[u32; LIP_LEVELS],
+        sense: f32,
+    ) {
+        for &i in &a[TOUCHING] {
+            let i = i as usize;
+            for w in b[TOUCHING].windows(2) {
+                let (j, k) = (w[0] as usize, w[1] as usize);
+                let [p, q, r] = [i, j, k].map(|v| skin.position[v] + self.drawn[v]);
+                let (high, low) = (q.z.max(r.z), q.z.min(r.z));
+                if p.z > high || p.z < low || high - low < 1e-3 {
+                    continue;
+                }
+                let share = ((p.z - q.z) / (r.z - q.z)).clamp(0.0, 1.0);
+                let overlap = sense * (p.y - (q.y + (r.y - q.y) * share));
+                if overlap <= SLOP_MM || overlap > 12.0 {
+                    continue;
+                }
+                let shift = sense * (overlap - SLOP_MM) * PASS_SHARE;
+                skin.position[i].y -= shift;
+                skin.position[j].y += shift * (1.0 - share);
+                skin.position[k].y += shift * share;
+                // No rebound: both sides take the mean of their vertical speeds if they approach.
+                let other = skin.velocity[j].y * (1.0 - share) + skin.velocity[k].y * share;
+                let approach = sense * (skin.velocity[i].y - other);
+                if approach > 0.0 {
+                    let half = 0.5 * sense * approach;
+                    skin.velocity[i].y -= half;
+                    skin.velocity[j].y += half * (1.0 - share);
+                    skin.velocity[k].y += half * share;
                 }
             }
         }
@@ -155,38 +206,5 @@ fn in_front(p: Vec3, bottom: f32, height: f32, front: f32) -> f32 {
         front + TEETH_CLEARANCE_MM - setback(p.x) - p.z
     } else {
         0.0
-    }
-}
-
-/// Pushes each touching vertex of `a` out of the chain `b`; `sense` is 1 where `a` lies below `b`.
-fn press(skin: &mut Bodies<'_>, a: &[u32; LIP_LEVELS], b: &[u32; LIP_LEVELS], sense: f32) {
-    for &i in &a[TOUCHING] {
-        let i = i as usize;
-        for w in b[TOUCHING].windows(2) {
-            let (j, k) = (w[0] as usize, w[1] as usize);
-            let (p, q, r) = (skin.position[i], skin.position[j], skin.position[k]);
-            let (high, low) = (q.z.max(r.z), q.z.min(r.z));
-            if p.z > high || p.z < low || high - low < 1e-3 {
-                continue;
-            }
-            let share = ((p.z - q.z) / (r.z - q.z)).clamp(0.0, 1.0);
-            let overlap = sense * (p.y - (q.y + (r.y - q.y) * share));
-            if overlap <= 0.0 || overlap > 12.0 {
-                continue;
-            }
-            let shift = sense * overlap * PASS_SHARE;
-            skin.position[i].y -= shift;
-            skin.position[j].y += shift * (1.0 - share);
-            skin.position[k].y += shift * share;
-            // No rebound: both sides take the mean of their vertical speeds if they approach.
-            let other = skin.velocity[j].y * (1.0 - share) + skin.velocity[k].y * share;
-            let approach = sense * (skin.velocity[i].y - other);
-            if approach > 0.0 {
-                let half = 0.5 * sense * approach;
-                skin.velocity[i].y -= half;
-                skin.velocity[j].y += half * (1.0 - share);
-                skin.velocity[k].y += half * share;
-            }
-        }
     }
 }

@@ -8,7 +8,7 @@
 //! | `control` | one number per muscle, jaw, tongue, lid, gaze and head angle |
 //! | `file` | a head as a .glb file |
 //! | `head` | a head as data: skin, rigid parts, the bodies they hang on |
-//! | `reference` | the head that is built in, made by program |
+//! | `reference` | the head that is built in |
 //! | `muscle` | fibres: linear and sphincter (HABER 5.1) |
 //! | `tissue` | the springs of the skin (HEADSHOP 4.2) |
 //! | `contact` | lips, teeth, lids and eyeballs stop each other |
@@ -17,7 +17,6 @@
 //! | `subdivision` | the surface that is drawn over the simulated mesh |
 //! | `measure` | aperture, width, protrusion, jaw of a key frame |
 //! | `quality` | how good a triangle mesh is |
-//! | `occlusion` | ambient light that reaches each vertex at rest |
 //!
 //! Millimetres, seconds and radians; +y up, +z out of the face, +x to the subject's left. Stiffness
 //! and damping are per unit of mass. This crate knows neither phones nor pixels.
@@ -33,7 +32,6 @@ mod head;
 mod key_frame;
 mod measure;
 mod muscle;
-mod occlusion;
 mod quality;
 mod reference;
 mod simulation;
@@ -53,7 +51,6 @@ pub use key_frame::{KeyFrame, TICK_RATE};
 pub use measure::{Measures, measure};
 pub use muscle::{Axis, Contraction, Fibre, GridPoint, MuscleGrid, Space, rebuild};
 pub use quality::{EdgeLengths, Quality, edge_lengths};
-pub use reference::ReferenceError;
 pub use simulation::{STEP_TICKS, Simulation};
 pub use subdivision::{
     Detail, LipStencils, Stencils, Subdivision, SubdivisionError, Topology, fit_control,

@@ -4,6 +4,7 @@ use std::collections::HashMap;
 use std::sync::OnceLock;
 
 use glam::{Affine3A, Vec3};
+use mouthpiece_rig::lip_level::{CONTACT, CREST};
 use mouthpiece_rig::{Contraction, Control, Controls, Fibre, Head, Material, Muscle};
 
 #[allow(
@@ -168,10 +169,10 @@ fn lips_meet_at_rest_and_part_at_the_corners_only() {
     let (upper, lower) = (&head.lips.upper, &head.lips.lower);
     assert_eq!(upper.len(), lower.len());
     for (u, l) in upper.iter().zip(lower) {
-        let gap = rest[u[3] as usize].distance(rest[l[3] as usize]);
+        let gap = rest[u[CONTACT] as usize].distance(rest[l[CONTACT] as usize]);
         assert!(gap < 0.05, "contact lines {gap} mm apart");
         assert!(
-            rest[u[1] as usize].y >= rest[l[1] as usize].y,
+            rest[u[CREST] as usize].y >= rest[l[CREST] as usize].y,
             "the upper lip is above the lower"
         );
     }

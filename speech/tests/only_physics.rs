@@ -3,7 +3,7 @@
 use std::sync::Arc;
 
 use mouthpiece_phonemes::{Phone, Segment};
-use mouthpiece_rig::{Calibration, Control, Head, STEP_TICKS, Simulation};
+use mouthpiece_rig::{Control, Head, STEP_TICKS, Simulation};
 use mouthpiece_speech::Speech;
 
 /// How far any vertex gets from rest while all 61 phones are spoken, mm.
@@ -13,15 +13,14 @@ use mouthpiece_speech::Speech;
 )]
 fn farthest(muscle_stiffness: f32, jaw: bool) -> f32 {
     const PHONE_TICKS: i64 = 4_800;
-    let calibration = Calibration::reference().expect("the crate's own data");
-    let speech = Speech::new(&calibration).expect("the crate's own tables");
+    let head = Arc::new(Head::reference().expect("the crate's own data"));
+    let speech = Speech::new(&head.calibration).expect("the crate's own tables");
     let segments: Vec<Segment> = (0..)
         .zip(Phone::ALL)
         .map(|(i, phone)| Segment::new(phone, i * PHONE_TICKS, (i + 1) * PHONE_TICKS))
         .collect();
     let track = speech.track(&segments);
 
-    let head = Arc::new(Head::reference().expect("the crate's own data"));
     let mut simulation = Simulation::new(Arc::clone(&head));
     simulation.set_muscle_stiffness(muscle_stiffness);
     let mut frame = head.rest_frame();

@@ -62,7 +62,7 @@ pub(super) fn head(document: &Document, binary: &[u8]) -> Result<Head, HeadError
     };
     check::head(&head)?;
     head.colour = colour(&data)?;
-    head.fibres = fibres(&head)?;
+    head.fibres = fibres(&head);
     Ok(head)
 }
 
@@ -83,18 +83,10 @@ fn welded<'a>(
 }
 
 /// The fibres of a head that is otherwise whole.
-fn fibres(head: &Head) -> Result<Vec<Fibre>, HeadError> {
-    if !head.muscles.is_empty() {
-        let bones = parts::BONES.iter().filter_map(|name| head.part(name));
-        let bones = bones.map(|part| &part.mesh);
-        return Ok(crate::rebuild(
-            &head.muscles,
-            &head.skin.mesh.positions,
-            bones,
-        ));
-    }
-    // Nothing is painted on the skin: the table of the reference head has to do.
-    crate::reference::fibres().map_err(|e| HeadError::Muscles(e.to_string()))
+fn fibres(head: &Head) -> Vec<Fibre> {
+    let bones = parts::BONES.iter().filter_map(|name| head.part(name));
+    let bones = bones.map(|part| &part.mesh);
+    crate::rebuild(&head.muscles, &head.skin.mesh.positions, bones)
 }
 
 fn skin_of(welded: Welded<'_>, creases: Vec<[u32; 2]>) -> Result<Skin, HeadError> {

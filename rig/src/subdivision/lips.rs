@@ -82,6 +82,18 @@ impl Head {
         limit_stencils(&self.topology(&self.mouth_corners()))
     }
 
+    /// The skin's vertices where they are drawn at rest; where its numbers do not fit together, as they
+    /// are.
+    #[must_use]
+    pub fn drawn_rest(&self) -> Vec<Vec3> {
+        let control = &self.skin.mesh.positions;
+        let mut drawn = control.clone();
+        if let Ok(limit) = self.skin_limit() {
+            limit.apply(control, &mut drawn);
+        }
+        drawn
+    }
+
     /// The skin as a control mesh.
     fn topology<'a>(&'a self, corners: &'a [u32]) -> Topology<'a> {
         Topology {

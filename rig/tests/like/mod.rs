@@ -8,8 +8,7 @@ use std::sync::OnceLock;
 
 use glam::{Vec2, Vec3};
 use mouthpiece_rig::{
-    Body, ColourMap, GridPoint, Head, Landmark, Layer, Material, Muscle, MuscleGrid, SurfacePoint,
-    rebuild,
+    ColourMap, GridPoint, Head, Landmark, Layer, Muscle, MuscleGrid, SurfacePoint, rebuild,
 };
 
 pub(crate) fn reference() -> &'static Head {
@@ -41,14 +40,6 @@ pub(crate) fn decorated() -> Head {
         },
         of: None,
     }];
-    for (name, body) in [("skull", Body::Skull), ("mandible", Body::Mandible)] {
-        let mut bone = head.part("teeth_upper").unwrap().clone();
-        bone.name = name.into();
-        bone.material = Material::Bone;
-        bone.bodies = vec![body];
-        bone.weight = vec![0.0; bone.mesh.positions.len()];
-        head.parts.push(bone);
-    }
     head.muscles = vec![grid(&head, Muscle::Risorius), grid(&head, Muscle::Mentalis)];
     let bones = ["skull", "mandible"].map(|name| &head.part(name).unwrap().mesh);
     head.fibres = rebuild(&head.muscles, &head.skin.mesh.positions, bones);

@@ -38,13 +38,14 @@ mod trunk;
 
 use glam::{Vec3, vec3};
 use mouthpiece_rig::{
-    Calibration, Eye, Head, LipStencils, Placement, SubdivisionError, fit_control, normals,
+    Calibration, Eye, Head, LipStencils, Material, Placement, SubdivisionError, fit_control,
+    normals,
 };
 use thiserror::Error;
 
 use crate::closest::SurfaceError;
 use crate::mesh::ScanError;
-use crate::{colour, hair, occlusion};
+use crate::{colour, hair, muscles, occlusion};
 use target::Target;
 
 /// What can be wrong with the data that the crate carries; none of it is a user's doing.
@@ -70,6 +71,9 @@ pub enum SculptError {
         "the landmark {0} lies far from its surface; restore rig/shop/data from the repository"
     )]
     Astray(String),
+    /// The muscles cannot be painted on it.
+    #[error(transparent)]
+    Muscles(#[from] muscles::MuscleError),
     /// The template is no surface.
     #[error("the skin template is no surface: {0}")]
     Template(SurfaceError),
@@ -126,6 +130,8 @@ pub fn reference(calibration: Calibration) -> Result<Head, SculptError> {
     head.skin.mesh.positions = fit_control(&head.skin_limit()?, &drawn);
     head.skin.reference.clone_from(&head.skin.mesh.positions);
     head.skin.mesh.normals = normals(&head.skin.mesh.positions, &head.skin.mesh.triangles);
+    let bones = head.parts.iter().filter(|p| p.material == Material::Bone);
+    head.muscles = muscles::paint(&head.skin.mesh, bones.map(|p| &p.mesh))?;
     head.parts.extend(hair::grow(&head));
     head.parts.extend(hair::lashes(&head));
     occlusion::bake(&mut head);

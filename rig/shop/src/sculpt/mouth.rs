@@ -138,7 +138,7 @@ fn columns(target: &Target, sign: f32) -> Vec<Column> {
             let border = if corner {
                 target.seen_from_front(CHEILION_X, -35.2)
             } else {
-                at_x(vermilion, x * 1.03)
+                at_x(vermilion, x + (CHEILION_X - SLIT_END.x) * share.powi(4))
             };
             let (from, to) = (chart_of(border), chart_of(meeting));
             let narrow = 1.0 - 0.5 * share.powi(3);
@@ -150,7 +150,12 @@ fn columns(target: &Target, sign: f32) -> Vec<Column> {
             }
             points[0] = border;
             for (point, (rise, back)) in points[INNER..].iter_mut().zip(INSIDE) {
-                let rise = if corner { 0.0 } else { sign * rise * narrow };
+                // At the corner the inner side runs straight back.
+                let (rise, back) = if corner {
+                    (0.0, 0.5 * (back + rise))
+                } else {
+                    (sign * rise * narrow, back)
+                };
                 *point = meeting + vec3(-0.05 * x * share * back / 6.0, rise, -back);
             }
             Column { chart, points }
@@ -172,12 +177,12 @@ fn place(half: &mut Half, columns: &[Column], corner: Option<[usize; LIP_LEVELS]
         }
         let mut numbers = [usize::MAX; LIP_LEVELS];
         for level in 0..LIP_LEVELS {
-            numbers[level] = match (at_corner, level) {
-                (true, 1..=2) => numbers[0],
-                (true, 4..=CONTACT) => numbers[3],
-                // Beside the corner the red is too low for all its levels.
-                (false, 2 | 4) if i == CORNER - 1 => numbers[level - 1],
-                (true, 3) => half.push(column.points[CONTACT], column.chart[CONTACT]),
+            numbers[level] = match (CORNER - i, level) {
+                (0 | 1, 1 | 2) => numbers[0],
+                (0 | 1, 4 | CONTACT) => numbers[3],
+                (0 | 1, 3) => half.push(column.points[CONTACT], column.chart[CONTACT]),
+                // Towards the corner the red is too low for all its levels.
+                (2, 2 | 4) => numbers[level - 1],
                 _ => half.push(column.points[level], column.chart[level.min(CONTACT)]),
             };
             let vertex = &mut half.vertices[numbers[level]];

@@ -122,7 +122,11 @@ pub(crate) fn only(names: &[&str]) -> Landmarks {
 }
 
 /// `scan` and `landmarks` moved alike.
-pub(crate) fn moved(scan: &Scan, landmarks: &Landmarks, by: impl Fn(DVec3) -> DVec3) -> (Scan, Landmarks) {
+pub(crate) fn moved(
+    scan: &Scan,
+    landmarks: &Landmarks,
+    by: impl Fn(DVec3) -> DVec3,
+) -> (Scan, Landmarks) {
     let (mut scan, mut landmarks) = (scan.clone(), landmarks.clone());
     for p in &mut scan.positions {
         *p = by(p.as_dvec3()).as_vec3();
