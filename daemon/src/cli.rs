@@ -11,7 +11,7 @@ use std::path::PathBuf;
 use clap::{ArgAction, Args, Parser, Subcommand, ValueEnum};
 use mouthpiece_render::{Background, Camera, Tier, View};
 
-pub use head::{CalibrateArgs, FitArgs, HeadCommand, InfoArgs};
+pub use head::{CalibrateArgs, FitArgs, HeadCommand, InfoArgs, LandmarksArgs};
 pub use values::{Fps, Rgb, Size};
 
 /// A real-time, speech-driven talking head: phoneme labels and sound in, a speaking face out.

@@ -10,6 +10,7 @@ use mouthpiece_shop::landmarks::Unit;
 pub enum HeadCommand {
     Info(InfoArgs),
     Fit(FitArgs),
+    Landmarks(LandmarksArgs),
     Calibrate(CalibrateArgs),
 }
 
@@ -73,4 +74,30 @@ pub struct CalibrateArgs {
     /// Where to write the same head with its new calibration
     #[arg(short, long, value_name = "OUT.glb")]
     pub output: PathBuf,
+}
+
+/// Click landmarks onto a scan in a window, for `head fit`; from three on the rest is estimated
+#[derive(Debug, Args)]
+#[command(
+    after_help = "Click to place, drag to turn, drag a dot to move it, wheel to zoom. Enter: next; Space: accept the estimate;\n\
+                  Backspace: clear; Alt: in mid-air, where the scan has no data; F, L, R: views; Ctrl+Z, Ctrl+Y, Ctrl+S.\n\
+                  Only what you set or accept is saved: `head fit` estimates the rest itself.\n\n\
+                  Examples:\n  mouthpiece head landmarks anna.ply\n  mouthpiece head landmarks anna.ply --landmarks rough.json -o anna.json"
+)]
+pub struct LandmarksArgs {
+    /// The scan: OBJ, PLY, STL or GLB
+    #[arg(value_name = "SCAN")]
+    pub scan: PathBuf,
+    /// Where to save; continued from if it is there already [default: beside the scan, anna.landmarks.json]
+    #[arg(short, long, value_name = "L.json")]
+    pub output: Option<PathBuf>,
+    /// Landmarks to start from
+    #[arg(long, value_name = "START.json")]
+    pub landmarks: Option<PathBuf>,
+    /// The head whose landmarks these are [default: the built-in head]
+    #[arg(long, value_name = "REF.glb")]
+    pub head: Option<PathBuf>,
+    /// Unit of the scan: mm, cm, m or in [default: by its size]
+    #[arg(long, value_name = "UNIT")]
+    pub unit: Option<Unit>,
 }

@@ -3,6 +3,7 @@
 mod calibrate;
 mod fit;
 mod info;
+mod landmarks;
 
 use crate::cli::HeadCommand;
 
@@ -11,6 +12,7 @@ pub fn run(command: &HeadCommand) -> anyhow::Result<()> {
     match command {
         HeadCommand::Info(args) => info::run(args),
         HeadCommand::Fit(args) => fit::run(args),
+        HeadCommand::Landmarks(args) => landmarks::run(args),
         HeadCommand::Calibrate(args) => calibrate::run(args),
     }
 }

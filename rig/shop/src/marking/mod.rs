@@ -9,7 +9,6 @@
 //! - `dots`: landmarks as they appear in the picture, and what pressing, dragging and releasing does
 //! - `history`: undo and redo
 //! - `names`: landmarks in words, and their order
-//! - `reference`: a head's landmarks on its drawn skin
 //! - `store`: from and to landmark files
 //! - `warnings`: what looks wrong
 
@@ -17,7 +16,6 @@ mod camera;
 mod dots;
 mod history;
 pub mod names;
-mod reference;
 mod store;
 mod warnings;
 
@@ -25,7 +23,6 @@ use glam::{Quat, Vec2, Vec3};
 
 pub use camera::{Camera, View};
 pub use dots::{Dot, Placed};
-pub use reference::reference_points;
 pub use warnings::Warning;
 
 use crate::closest::Surface;
@@ -75,7 +72,8 @@ pub struct Marking {
 }
 
 impl Marking {
-    /// Nothing set yet. `unit` is the scan's, where somebody said it. None if there are no landmarks to set.
+    /// Nothing set yet. `reference` is [`landmarks_of`](crate::refit::landmarks_of) a head, `unit` the scan's, where
+    /// somebody said it. None if there are no landmarks to set.
     #[must_use]
     pub fn new(
         scan: Surface,
