@@ -145,15 +145,22 @@ impl Stage {
     }
 }
 
-/// The landmarks on the skin of `head`, as scans are prepared by; `drawn` is its drawn surface.
-fn reference_points(head: &Head, drawn: &[Vec3]) -> Vec<ReferencePoint> {
-    let normals = normals(drawn, &head.skin.mesh.triangles);
+/// The landmarks on the skin of `head`, as scans are prepared by. Their normals are those of the skin round them that a
+/// scanner sees: just there, at the corner of an eye, the skin may turn inwards.
+fn reference_points(head: &Head, rest: &Rest) -> Vec<ReferencePoint> {
+    const ROUND_MM: f32 = 12.0;
+    let normals = normals(&rest.drawn, &head.skin.mesh.triangles);
     let on_skin = head.landmarks.iter().filter(|l| l.layer == Layer::Skin);
     on_skin
-        .map(|l| ReferencePoint {
-            name: l.name.clone(),
-            at: l.at.on(drawn),
-            normal: l.at.on(&normals).normalize_or(Vec3::Z),
+        .map(|l| {
+            let at = l.at.on(&rest.drawn);
+            let near = (0..normals.len()).filter(|v| rest.drawn[*v].distance(at) < ROUND_MM);
+            let sum: Vec3 = near.map(|v| normals[v] * rest.freedom[v]).sum();
+            ReferencePoint {
+                name: l.name.clone(),
+                at,
+                normal: sum.normalize_or(l.at.on(&normals).normalize_or(Vec3::Z)),
+            }
         })
         .collect()
 }
@@ -164,7 +171,7 @@ fn reference_points(head: &Head, drawn: &[Vec3]) -> Vec<ReferencePoint> {
 /// Where the reference head is not sound.
 pub fn landmarks_of(reference: &Head) -> Result<Vec<ReferencePoint>, RefitError> {
     let rest = Rest::of(reference)?;
-    Ok(reference_points(reference, &rest.drawn))
+    Ok(reference_points(reference, &rest))
 }
 
 /// Makes the head of `scan`; calls `progress` as each stage begins.
@@ -183,7 +190,7 @@ pub fn fit_head(
 
     progress(Stage::Prepare);
     let rest = Rest::of(reference)?;
-    let points = reference_points(reference, &rest.drawn);
+    let points = reference_points(reference, &rest);
     if points.len() < crate::landmarks::MIN_LANDMARKS {
         return Err(RefitError::Bare(points.len()));
     }

@@ -39,6 +39,13 @@ impl Rest {
     pub(super) fn control(&self, drawn: &[Vec3], head: &mut Head) {
         let skin = &mut head.skin.mesh;
         skin.positions = fit_control(&self.limit, drawn);
+        // To the bit: a gap of a hair's breadth would let light through.
+        for (upper, lower) in head.lips.upper.iter().zip(&head.lips.lower) {
+            let [up, low] = [upper, lower].map(|c| c[lip_level::CONTACT] as usize);
+            let middle = (skin.positions[up] + skin.positions[low]) / 2.0;
+            skin.positions[up] = middle;
+            skin.positions[low] = middle;
+        }
         skin.normals = normals(&skin.positions, &skin.triangles);
     }
 
