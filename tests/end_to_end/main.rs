@@ -5,6 +5,7 @@
 //! | `mouth` | what a viewer sees: lips meet in /p b m/, the mouth opens in open vowels |
 //! | `export` | videos: in step, the same every time, whole or not there |
 //! | `head` | head files: spoken with, looked at, refused |
+//! | `head_fit` | scans made heads, and what is no scan refused |
 //! | `labels` | label files of every sad kind, and the round trip |
 //! | `sound` | sound files of every kind |
 //! | `usage` | exit statuses, help, what doctor and bench print |
@@ -22,6 +23,7 @@
 mod export;
 mod graphics;
 mod head;
+mod head_fit;
 mod house;
 mod labels;
 mod mouth;

@@ -139,8 +139,12 @@ impl Fit {
     /// The warp that carries all else of a head to its new skin (HEADSHOP 5.2): through skin vertices everywhere, as
     /// finally fitted, so that it follows the local fit too, and the back of the head where no scan was.
     pub fn carrier(&self, template: &Template) -> Result<Warp, WarpError> {
-        /// One vertex in each cube of this edge, mm: several hundred on a head.
-        const CELL_MM: f32 = 10.0;
+        /// One vertex in each cube of this edge, mm, where a face has its features, and elsewhere: several hundred
+        /// on a head.
+        const CELL_MM: f32 = 11.0;
+        const BEHIND_MM: f32 = 22.0;
+        /// The face begins here, mm before the head's middle.
+        const FACE_MM: f32 = 40.0;
         /// Neighbouring vertices with their noise may be missed by a little.
         const GIVE_MM: f32 = 2.0;
         let mut taken = std::collections::HashSet::new();
@@ -150,7 +154,9 @@ impl Fit {
             .zip(&self.positions)
             .zip(template.freedom)
             .filter(|((p, _), freedom)| {
-                **freedom >= 1.0 && taken.insert((**p / CELL_MM).floor().as_ivec3())
+                let face = p.z > FACE_MM;
+                let cell = **p / if face { CELL_MM } else { BEHIND_MM };
+                **freedom >= 1.0 && taken.insert((face, cell.floor().as_ivec3()))
             })
             .map(|(pair, _)| pair)
             .unzip();
