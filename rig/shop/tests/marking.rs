@@ -294,12 +294,26 @@ fn the_camera_keeps_what_it_promises() {
     let mut marking = marking(&shapes::head());
     put(&mut marking, &["prn", "ex_l", "ex_r"]);
     marking.look(View::Front);
-    let camera = &mut marking.camera;
+    // Zooming keeps the skin under the pointer where it is, and grows it by as much as asked.
     let pixel = vec2(500.0, 260.0);
-    let under = camera.on_plane(pixel, SIZE, truth("prn")).unwrap();
-    let target = camera.on_plane(pixel, SIZE, camera.target).unwrap();
-    camera.zoom(2.0, pixel, SIZE);
-    assert!(camera.pixel_of(target, SIZE).unwrap().distance(pixel) < 0.1);
+    let under = marking.pick(pixel, SIZE).unwrap();
+    let beside = under + marking.camera.turn * Vec3::X;
+    let before = marking.camera.pixel_of(beside, SIZE).unwrap();
+    marking.zoom(2.0, pixel, SIZE);
+    let camera = &mut marking.camera;
+    assert!(camera.pixel_of(under, SIZE).unwrap().distance(pixel) < 0.1);
+    let grown = camera.pixel_of(beside, SIZE).unwrap().distance(pixel) / before.distance(pixel);
+    assert!((grown - 2.0).abs() < 0.02, "{grown}");
+    // What is turned about is what one looks at when near; nothing jumps when that is chosen.
+    marking.zoom(3.0, pixel, SIZE);
+    marking.begin_turn(SIZE);
+    let camera = &mut marking.camera;
+    assert!(camera.pixel_of(under, SIZE).unwrap().distance(pixel) < 0.1);
+    let eye = camera.eye();
+    camera.orbit(vec2(5.0, 0.0), SIZE);
+    assert!(camera.eye().distance(eye) < 10.0);
+    let target = camera.target;
+    let pixel = camera.pixel_of(target, SIZE).unwrap();
     camera.pan(vec2(40.0, -10.0), SIZE);
     let moved = camera.pixel_of(target, SIZE).unwrap();
     assert!(moved.distance(pixel + vec2(40.0, -10.0)) < 0.5, "{moved}");

@@ -114,15 +114,21 @@ impl Session {
     }
 
     pub fn undo(&mut self) {
-        if !self.marking.undo() {
-            self.say("There is nothing to undo.");
-        }
+        let done = self.marking.undo();
+        self.say(if done {
+            ""
+        } else {
+            "There is nothing to undo."
+        });
     }
 
     pub fn redo(&mut self) {
-        if !self.marking.redo() {
-            self.say("There is nothing to do again.");
-        }
+        let done = self.marking.redo();
+        self.say(if done {
+            ""
+        } else {
+            "There is nothing to do again."
+        });
     }
 
     /// After a click that was to place the selected landmark, which was set `before` or not.

@@ -91,6 +91,9 @@ fn interact(ui: &Ui, response: &egui::Response, rect: Rect, session: &mut Sessio
     {
         marking.press(local(rect, at), size, REACH);
     }
+    if response.drag_started() && !marking.is_dragging() {
+        marking.begin_turn(size);
+    }
     if let Some(at) = response.interact_pointer_pos()
         && marking.is_dragging()
     {
@@ -110,9 +113,7 @@ fn interact(ui: &Ui, response: &egui::Response, rect: Rect, session: &mut Sessio
     if let Some(at) = response.hover_pos()
         && scroll.y != 0.0
     {
-        marking
-            .camera
-            .zoom((scroll.y * ZOOM).exp(), local(rect, at), size);
+        marking.zoom((scroll.y * ZOOM).exp(), local(rect, at), size);
     }
     if response.clicked()
         && let Some(at) = response.interact_pointer_pos()

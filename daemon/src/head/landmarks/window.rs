@@ -97,6 +97,7 @@ struct Open {
     input: egui_winit::State,
     context: egui::Context,
     window: Arc<Window>,
+    title: String,
     failures: u32,
 }
 
@@ -127,7 +128,9 @@ impl ApplicationHandler for App {
         let Some(open) = &mut self.open else {
             return;
         };
-        if open.input.on_window_event(&open.window, &event).repaint {
+        // To egui the request to redraw is itself a reason to redraw.
+        let redraw = matches!(event, WindowEvent::RedrawRequested);
+        if open.input.on_window_event(&open.window, &event).repaint && !redraw {
             open.window.request_redraw();
         }
         match event {
@@ -237,6 +240,7 @@ impl Open {
             input,
             context,
             window,
+            title: String::new(),
             failures: 0,
             gpu,
         })
@@ -268,11 +272,15 @@ impl Open {
             }
         };
         self.failures = 0;
-        let mark = if session.is_dirty() { " *" } else { "" };
-        self.window.set_title(&format!(
-            "Mouthpiece: landmarks, {}{mark}",
-            session.output.display()
-        ));
+        let title = format!(
+            "Mouthpiece: landmarks, {}{}",
+            session.output.display(),
+            if session.is_dirty() { " *" } else { "" }
+        );
+        if title != self.title {
+            self.window.set_title(&title);
+            self.title = title;
+        }
         let input = self.input.take_egui_input(&self.window);
         let context = self.context.clone();
         let mut output = context.run_ui(input, |ui| self.contents(ui, session, whole));

@@ -106,8 +106,12 @@ impl Camera {
     /// Moves so far back that all is in sight.
     pub fn fit(&mut self) {
         self.target = self.middle;
+        self.distance = self.whole();
+    }
+
+    fn whole(&self) -> f32 {
         // The corners of a box round a head are empty.
-        self.distance = self.radius * 0.8 / (FOV / 2.0).sin();
+        self.radius * 0.8 / (FOV / 2.0).sin()
     }
 
     /// Looks from `view`, where `head` turns the head's frame into the scan's.
@@ -146,8 +150,10 @@ impl Camera {
         self.target += self.turn * shift;
     }
 
-    /// Goes nearer (`factor` above 1) or farther, keeping the place under the pixel `at`.
-    pub fn zoom(&mut self, factor: f32, at: Vec2, size: Vec2) {
+    /// Goes nearer (`factor` above 1) or farther, keeping what lies under the pixel `at` there: at the depth of
+    /// `point`, so that a nose does not come at the eye faster than it grows.
+    pub fn zoom(&mut self, factor: f32, at: Vec2, size: Vec2, point: Vec3) {
+        self.aim(point);
         let limits = (self.radius * 0.05, self.radius * 40.0);
         let distance = (self.distance / factor).clamp(limits.0, limits.1);
         let before = self.pixel(self.distance, size);
@@ -155,6 +161,24 @@ impl Camera {
         let off = at - size / 2.0;
         self.target += self.turn * Vec3::new(off.x, -off.y, 0.0) * (before - after);
         self.distance = distance;
+    }
+
+    /// What to turn about: what is in the middle of the picture (`seen`) if that is near, else the middle of it all.
+    pub fn pivot(&mut self, seen: Option<Vec3>) {
+        /// As a share of the distance from which all is in sight.
+        const NEAR: f32 = 0.5;
+        let near = NEAR * self.whole();
+        let seen = seen.filter(|p| (self.eye() - *p).dot(self.back()) < near);
+        self.aim(seen.unwrap_or(self.middle));
+    }
+
+    /// Moves the target along the view to the depth of `point`; the picture stays as it is.
+    fn aim(&mut self, point: Vec3) {
+        let depth = (self.eye() - point).dot(self.back());
+        if depth > self.radius * 0.01 {
+            self.target = self.eye() - self.back() * depth;
+            self.distance = depth;
+        }
     }
 
     /// The eye's place.

@@ -272,6 +272,18 @@ impl Marking {
             .roll(f32::from(turns) * std::f32::consts::FRAC_PI_2);
     }
 
+    /// Goes nearer to what is under the pixel, or away from it.
+    pub fn zoom(&mut self, factor: f32, at: Vec2, size: Vec2) {
+        let point = self.pick(at, size).unwrap_or(self.camera.target);
+        self.camera.zoom(factor, at, size, point);
+    }
+
+    /// Before the view is turned: chooses what to turn about.
+    pub fn begin_turn(&mut self, size: Vec2) {
+        let seen = self.pick(size / 2.0, size);
+        self.camera.pivot(seen);
+    }
+
     /// What is under the pixel.
     #[must_use]
     pub fn pick(&self, at: Vec2, size: Vec2) -> Option<Vec3> {
