@@ -34,7 +34,7 @@ impl Bench {
             points: marks
                 .map(|l| (l.name.clone(), json!(l.at.on(&drawn).to_array())))
                 .collect(),
-            positions: drawn.iter().map(|p| p.to_array()).collect(),
+            positions: drawn.into_iter().map(Into::into).collect(),
             triangles: skin.mesh.triangles.iter().filter(dry).copied().collect(),
         }
     }
