@@ -44,7 +44,7 @@ fn stages(c: &mut Criterion) {
         });
     }
     c.bench_function("surface/build", |b| {
-        b.iter(|| Surface::new(&pair.scan.0, &pair.scan.1))
+        b.iter(|| Surface::new(&pair.scan.0, &pair.scan.1));
     });
     let Ok(scan) = Surface::new(&pair.scan.0, &pair.scan.1) else {
         return;

@@ -10,36 +10,36 @@
 //! | `eyes` | eyeballs by their lids, lids outside them, how far lids turn |
 //! | `parts` | teeth, tongue, bones, hair and all else |
 //! | `colour`, `blend` | the scan's colour in the new head's map |
-//! | `report` | what users read about a fit |
+//! | `report`, `stage`, `error` | what users read about a fit, while it runs, and where there is none |
 //!
 //! It reads and writes no files, and grows neither hair nor beard of the scanned person: hair is the reference's.
 
 mod blend;
 mod colour;
+mod error;
 mod eyes;
 mod parts;
 mod report;
 mod skin;
+mod stage;
 
 use std::collections::HashSet;
-use std::time::Instant;
 
 use glam::Vec3;
-use mouthpiece_rig::{
-    ColourMap, Head, Layer, LipStencils, SubdivisionError, measure, normals, rebuild,
-};
-use thiserror::Error;
+use mouthpiece_rig::{ColourMap, Head, Layer, LipStencils, measure, normals, rebuild};
 
-use crate::bones::{self, BonesError};
-use crate::closest::{Surface, SurfaceError};
+use crate::bones;
+use crate::closest::Surface;
 use crate::fit::estimate::{Source, estimate};
 use crate::fit::report::{Spread, report as judge};
-use crate::fit::{self, FitError, Template, fit};
+use crate::fit::{self, Template, fit};
 use crate::landmarks::Landmarks;
-use crate::mesh::{self, PrepareError, Prepared, ReferencePoint, Scan};
-use crate::warp::WarpError;
+use crate::mesh::{self, Prepared, ReferencePoint, Scan};
+pub use error::RefitError;
 pub use report::{FitReport, Seconds};
 use skin::Rest;
+use stage::Clock;
+pub use stage::Stage;
 
 /// A fit whose mean distance from skin to scan is more than this is none, mm.
 const ASTRAY_MM: f64 = 4.0;
@@ -67,41 +67,6 @@ impl Default for Options {
     }
 }
 
-/// Why there is no new head.
-#[derive(Debug, Error)]
-pub enum RefitError {
-    /// Scan or landmarks.
-    #[error(transparent)]
-    Prepare(#[from] PrepareError),
-    /// The scan is no surface.
-    #[error("the scan: {0}")]
-    Scan(SurfaceError),
-    /// The landmarks that were not given cannot be guessed.
-    #[error("the landmarks: {0}")]
-    Landmarks(#[from] WarpError),
-    /// The skin does not come to lie on the scan.
-    #[error("the skin cannot be fitted: {0}")]
-    Fit(#[from] FitError),
-    /// It came out, and is no head.
-    #[error(
-        "the fit went astray ({0}): check that the landmarks lie where their names say and that the scan shows one whole face"
-    )]
-    Astray(String),
-    /// The bones.
-    #[error("the bones cannot follow: {0}")]
-    Bones(#[from] BonesError),
-    /// The reference head.
-    #[error(
-        "the head to start from is not sound: {0}; take the built-in one or one that `head fit` wrote"
-    )]
-    Reference(#[from] SubdivisionError),
-    /// The reference head has too little on it.
-    #[error(
-        "the head to start from has {0} landmarks on its skin, too few to fit by: take the built-in one or one that `head fit` wrote"
-    )]
-    Bare(usize),
-}
-
 /// A new head with what is to be said about it.
 #[derive(Debug, Clone)]
 pub struct Fitted {
@@ -109,40 +74,6 @@ pub struct Fitted {
     pub head: Head,
     /// How good it is.
     pub report: FitReport,
-}
-
-/// What is being done, for who shows progress.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-#[allow(missing_docs, reason = "the names say it")]
-pub enum Stage {
-    Prepare,
-    Skin,
-    Parts,
-    Colour,
-    Measure,
-}
-
-impl Stage {
-    /// All of them, in order.
-    pub const ALL: [Self; 5] = [
-        Self::Prepare,
-        Self::Skin,
-        Self::Parts,
-        Self::Colour,
-        Self::Measure,
-    ];
-
-    /// In words.
-    #[must_use]
-    pub fn words(self) -> &'static str {
-        match self {
-            Self::Prepare => "looking at the scan",
-            Self::Skin => "fitting the skin",
-            Self::Parts => "bones, eyes, mouth and hair follow",
-            Self::Colour => "colour",
-            Self::Measure => "measuring",
-        }
-    }
 }
 
 /// The landmarks on the skin of `head`, as scans are prepared by. Their normals are those of the skin round them that a
@@ -359,28 +290,6 @@ fn check(head: &Head, judged: &crate::fit::report::Report) -> Result<(), RefitEr
         )));
     }
     Ok(())
-}
-
-/// Wall clock, stage by stage.
-struct Clock {
-    begun: Instant,
-    last: Instant,
-}
-
-impl Clock {
-    fn new() -> Self {
-        let begun = Instant::now();
-        Self { begun, last: begun }
-    }
-
-    fn lap(&mut self) -> f64 {
-        let last = std::mem::replace(&mut self.last, Instant::now());
-        (self.last - last).as_secs_f64()
-    }
-
-    fn total(&self) -> f64 {
-        self.begun.elapsed().as_secs_f64()
-    }
 }
 
 /// A colour map with its share of texels that the scan decides.

@@ -3,7 +3,7 @@
 use glam::Vec3;
 use mouthpiece_rig::{Head, Lips, Stencils, SubdivisionError, fit_control, lip_level, normals};
 
-use crate::closest::Surface;
+use crate::closest::{Facing, Surface};
 
 /// Light that must arrive at a vertex (share of the sky at rest) for a scanner to begin to see it, and to see it well.
 const SEEN: (f32, f32) = (0.2, 0.4);
@@ -51,9 +51,16 @@ impl Rest {
 
     /// The vertices on the face, where the scan has a surface worth comparing with.
     pub(super) fn face(&self, head: &Head, scan: &Surface, drawn: &[Vec3]) -> Vec<bool> {
+        /// Cosine: what faces another way is another part of the scan, seen through where this one is missing.
+        const AGREE: f32 = 0.3;
         let reference = &head.skin.reference;
+        let normals = normals(drawn, &head.skin.mesh.triangles);
         let there = |v: usize| {
-            let hit = scan.closest(drawn[v], f32::INFINITY);
+            let facing = Facing {
+                direction: normals[v],
+                cosine: AGREE,
+            };
+            let hit = scan.closest_facing(drawn[v], f32::INFINITY, facing);
             hit.is_some_and(|hit| !scan.on_border(&hit))
         };
         (0..drawn.len())
