@@ -9,6 +9,7 @@ use std::sync::Arc;
 
 use glam::{DVec3, Quat, Vec3, vec3};
 use mouthpiece_rig::{Articulation, Detail, Head, Simulation, lip_level, measure};
+use mouthpiece_shop::closest::Surface;
 use mouthpiece_shop::landmarks::{Landmarks, Unit};
 use mouthpiece_shop::mesh::{Scan, ScanColour};
 use mouthpiece_shop::refit::{Fitted, Options, RefitError, fit_head, landmarks_of};
@@ -239,6 +240,45 @@ fn eyes_lie_behind_their_lids_and_lips_meet() {
             let [a, b] = [upper, lower].map(|c| skin[c[lip_level::CONTACT] as usize]);
             assert!(a.distance(b) < 1e-3, "{a} {b}");
         }
+    }
+}
+
+/// How high each vertex of a part lies over the dry skin, mm; only those near it.
+fn heights(head: &Head, part: &str) -> Vec<Option<f32>> {
+    const NEAR_MM: f32 = 8.0;
+    let dry = |t: &&[u32; 3]| t.iter().all(|v| head.skin.wet[*v as usize] < 0.5);
+    let triangles = head.skin.mesh.triangles.iter().filter(dry).copied();
+    let skin = Surface::new(&drawn(head), &triangles.collect::<Vec<_>>()).unwrap();
+    let places = &head.part(part).unwrap().mesh.positions;
+    places
+        .iter()
+        .map(|p| {
+            let hit = skin.closest(*p, NEAR_MM)?;
+            Some((*p - hit.point).dot(skin.normal(&hit)))
+        })
+        .collect()
+}
+
+#[test]
+fn bones_stay_under_the_skin_and_hair_over_it() {
+    let reference = Head::reference().unwrap();
+    for warp in [other, child] {
+        let head = made(&reference, &scanned(&reference, warp)).head;
+        for part in ["skull", "mandible"] {
+            let pairs = heights(&reference, part);
+            let worse = heights(&head, part)
+                .into_iter()
+                .zip(pairs)
+                .filter(|pair| matches!(pair, (Some(new), Some(old)) if *new > old.max(-0.5) + 1.0))
+                .count();
+            assert!(worse < 5, "{worse} vertices of the {part} come out");
+        }
+        let sunk = |head: &Head| {
+            let all = heights(head, "hair");
+            all.iter().flatten().filter(|h| **h < -1.0).count() as f32 / all.len() as f32
+        };
+        let (before, after) = (sunk(&reference), sunk(&head));
+        assert!(after < before + 0.02, "hair sinks: {before} {after}");
     }
 }
 
