@@ -221,7 +221,7 @@ impl Surface {
 
     /// The first point within `max` mm along a ray (`direction` of length one) on triangles that `facing` admits.
     pub fn ray(&self, origin: Vec3, direction: Vec3, max: f32, facing: Facing) -> Option<Hit> {
-        let ray = Ray::new(origin.into(), direction.into(), 0.0, max);
+        let ray = Ray::new(origin.into(), slanted(direction).into(), 0.0, max);
         let wanted = Vec3A::from(facing.direction);
         let mut hit = RayHit::none();
         let found = self.bvh.ray_traverse(ray, &mut hit, |ray, leaf| {
@@ -316,6 +316,15 @@ fn weld(positions: &[Vec3], triangles: &[[u32; 3]]) -> Vec<[u32; 3]> {
         .iter()
         .map(|t| t.map(|v| joined[v as usize]))
         .collect()
+}
+
+/// A direction without zeros. A ray that runs exactly along the side of a box meets it at 0 times infinity, which is no
+/// number, and is lost: scans of symmetric things have such sides, and views from the front such rays.
+fn slanted(direction: Vec3) -> Vec3 {
+    /// Off by 20 micrometres on a metre: beyond what rounding leaves open between two triangles that share an edge.
+    const LEAST: f32 = 2e-5;
+    let away = |d: f32| if d.abs() < LEAST { LEAST } else { d };
+    Vec3::from(direction.to_array().map(away))
 }
 
 fn box_distance(aabb: &Aabb, p: Vec3A) -> f32 {

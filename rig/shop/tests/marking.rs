@@ -6,7 +6,7 @@
 mod shapes;
 
 use glam::{DVec3, Quat, Vec2, Vec3, vec2};
-use mouthpiece_shop::closest::Surface;
+use mouthpiece_shop::closest::{Facing, Surface};
 use mouthpiece_shop::landmarks::{LandmarkFault, Landmarks, Unit};
 use mouthpiece_shop::marking::{Marking, Placed, State, View, Warning};
 use mouthpiece_shop::mesh::Scan;
@@ -50,6 +50,41 @@ fn a_click_puts_the_selected_landmark_on_the_surface_under_the_pixel() {
     assert_eq!(marking.set_count(), 1);
 }
 
+/// Rays exactly along the edges of a symmetric scan went through it.
+#[test]
+fn rays_along_the_sides_of_triangles_hit() {
+    const SIDE: u32 = 40;
+    let mut scan = Scan::default();
+    for row in 0..=SIDE {
+        for column in 0..=SIDE {
+            let x = column as f32 - SIDE as f32 / 2.0;
+            let y = row as f32 - SIDE as f32 / 2.0;
+            scan.positions.push(Vec3::new(x, y, 30.0 - x * x / 20.0));
+        }
+    }
+    for row in 0..SIDE {
+        for column in 0..SIDE {
+            let [a, b] = [row, row + 1].map(|r| r * (SIDE + 1) + column);
+            scan.triangles.extend([[a, a + 1, b + 1], [a, b + 1, b]]);
+        }
+    }
+    // As scans in metres stand, where coordinates are not round.
+    for (scale, shift) in [(1.0, 0.0), (0.001, 1.2), (0.001, 0.7), (0.01, -7.3)] {
+        let place = |p: Vec3| p * scale + shift;
+        let positions: Vec<Vec3> = scan.positions.iter().map(|p| place(*p)).collect();
+        let surface = Surface::new(&positions, &scan.triangles).unwrap();
+        for column in 1..SIDE {
+            let x = column as f32 - SIDE as f32 / 2.0;
+            for tilt in -30..30 {
+                let way = Vec3::new(0.0, tilt as f32 * 0.005, -1.0).normalize();
+                let origin = place(Vec3::new(x, 0.3, 90.0));
+                let hit = surface.ray(origin, way, 500.0, Facing::ANY);
+                assert!(hit.is_some(), "{scale} {shift} {x} {tilt}");
+            }
+        }
+    }
+}
+
 #[test]
 fn after_three_clicks_the_others_are_about_where_they_belong() {
     let mut marking = marking(&shapes::head());
@@ -84,6 +119,9 @@ fn three_on_one_line_do_not_say_how_the_head_is_turned() {
         marking.set(marking.find(name).unwrap(), at);
     }
     assert_eq!(marking.state(marking.find("prn").unwrap()), State::Unknown);
+    assert_eq!(marking.warnings(), &[Warning::Line]);
+    put(&mut marking, &["ex_l"]);
+    assert_ne!(marking.state(marking.find("prn").unwrap()), State::Unknown);
 }
 
 #[test]

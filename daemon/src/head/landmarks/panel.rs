@@ -135,6 +135,7 @@ pub fn warnings(ui: &mut Ui, marking: &mut Marking) {
         ui.horizontal_wrapped(|ui| {
             ui.colored_label(ui.visuals().warn_fg_color, marking.words(&warning));
             match warning {
+                Warning::Line => {}
                 Warning::Swapped => {
                     if ui.button("Exchange left and right").clicked() {
                         marking.exchange_sides();

@@ -25,7 +25,7 @@ pub use camera::{Camera, View};
 pub use dots::{Dot, Placed};
 pub use warnings::Warning;
 
-use crate::closest::Surface;
+use crate::closest::{Facing, Surface};
 use crate::fit::align::Similarity;
 use crate::fit::estimate::{Estimate, Source, estimate};
 use crate::landmarks::Unit;
@@ -83,7 +83,7 @@ impl Marking {
         if reference.is_empty() {
             return None;
         }
-        reference.sort_by(|a, b| names::rank(&a.name).cmp(&names::rank(&b.name)));
+        reference.sort_by_key(|r| names::rank(&r.name));
         let count = reference.len();
         Some(Self {
             camera: Camera::at(scan.positions()),
@@ -288,9 +288,7 @@ impl Marking {
     #[must_use]
     pub fn pick(&self, at: Vec2, size: Vec2) -> Option<Vec3> {
         let (eye, way) = self.camera.ray(at, size);
-        let hit = self
-            .scan
-            .ray(eye, way, f32::MAX, crate::closest::Facing::ANY)?;
+        let hit = self.scan.ray(eye, way, f32::MAX, Facing::ANY)?;
         Some(hit.point)
     }
 
@@ -313,7 +311,11 @@ impl Marking {
             .iter()
             .filter_map(|s| Some((s.at, s.known?)))
             .unzip();
-        if from.len() < ENOUGH || on_a_line(&from) || on_a_line(&to) {
+        if from.len() < ENOUGH {
+            return;
+        }
+        if on_a_line(&from) || on_a_line(&to) {
+            self.warnings = vec![Warning::Line];
             return;
         }
         self.similarity = Similarity::between(&from, &to);

@@ -26,6 +26,8 @@ const WORTH_MM: f32 = 3.0;
 /// What looks wrong.
 #[derive(Debug, Clone, PartialEq)]
 pub enum Warning {
+    /// Enough are set, but nearly on one line, which does not say how the head is turned about it.
+    Line,
     /// Everything that has a side is on the other one.
     Swapped,
     /// The two of this pair (numbers of landmarks) stand in each other's places.
@@ -44,6 +46,9 @@ impl Warning {
     pub(super) fn words(&self, names: &[&str]) -> String {
         let name = |i: usize| names.get(i).copied().unwrap_or_default();
         match self {
+            Self::Line => {
+                "All that are set lie on one line: set one beside it, and the rest will be estimated.".to_owned()
+            }
             Self::Swapped => "Left and right look swapped: _l is the subject's left, on the right of the picture in \
                               the front view."
                 .to_owned(),
