@@ -4,7 +4,11 @@
 //! distances between two points, as a sliding or spreading caliper takes them; his projective and
 //! tangential (tape) measurements are not here.
 
-use crate::Head;
+use std::collections::HashMap;
+
+use glam::Vec3;
+
+use crate::{Head, Layer};
 
 /// Landmarks of a measurement.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -87,7 +91,15 @@ pub struct Measurement {
 /// All that the head's landmarks suffice for.
 #[must_use]
 pub fn measurements(head: &Head) -> Vec<Measurement> {
-    let between = |a: &str, b: &str| Some(head.landmark(a)?.distance(head.landmark(b)?));
+    let places = head.landmark_places();
+    let marks: HashMap<&str, Vec3> = head
+        .landmarks
+        .iter()
+        .zip(places)
+        .filter(|(mark, _)| mark.layer == Layer::Skin)
+        .map(|(mark, place)| (mark.name.as_str(), place))
+        .collect();
+    let between = |a: &str, b: &str| Some(marks.get(a)?.distance(*marks.get(b)?));
     let side = |name: &str, side: &str| format!("{name}_{side}");
     TABLE
         .iter()

@@ -71,6 +71,16 @@ pub struct Calibration {
     quadratics: [Vec<f32>; MEASURES],
 }
 
+/// Of a head whose mouth is not learnt yet: no muscle does anything.
+impl Default for Calibration {
+    fn default() -> Self {
+        Self {
+            rest_width_mm: 50.0,
+            quadratics: std::array::from_fn(|_| vec![0.0; TERMS]),
+        }
+    }
+}
+
 impl Calibration {
     /// Itself, when it is one that this version can work with.
     pub(crate) fn checked(self) -> Result<Self, CalibrationError> {

@@ -14,7 +14,8 @@ use crate::{Eye, Head, Placement};
 
 /// Levels of a lip's column that can touch the other lip.
 const TOUCHING: std::ops::RangeInclusive<usize> = CREST..=LIP_LEVELS - 1;
-/// Share of an overlap that one pass removes; two passes run.
+/// Passes over all columns, and the share of an overlap that one removes.
+const PASSES: usize = 2;
 const PASS_SHARE: f32 = 0.5;
 /// So little an overlap counts as touching, mm: lips that meet at rest do not press.
 const SLOP_MM: f32 = 0.02;
@@ -89,7 +90,7 @@ impl Contact {
     }
 
     fn lips(&self, skin: &mut Bodies<'_>) {
-        for pass in 0..2 {
+        for pass in 0..PASSES {
             for (upper, lower) in &self.columns {
                 // Alternate who is tested against whom, so that neither lip wins.
                 for turn in 0..2 {

@@ -135,7 +135,7 @@ pub struct Skin {
 
 /// Levels of a lip's column, from the vermilion border over the red to the contact line and the inner
 /// side: see [`Lips`] and [`lip_level`].
-pub const LIP_LEVELS: usize = 9;
+pub const LIP_LEVELS: usize = 11;
 
 /// Levels of a lip's column that have a name.
 pub mod lip_level {
@@ -144,9 +144,9 @@ pub mod lip_level {
     /// The most forward part of the red.
     pub const CREST: usize = 1;
     /// Where the lips touch at rest.
-    pub const CONTACT: usize = 5;
+    pub const CONTACT: usize = 7;
     /// The first level of the inner side, which ends at the column's last.
-    pub const INNER: usize = 6;
+    pub const INNER: usize = 8;
 }
 
 /// The skin vertices of both lips as columns from the subject's right corner to the left one; column
@@ -412,13 +412,17 @@ impl Head {
         }
     }
 
-    /// Where the skin's landmark of that name lies, mm.
+    /// Where each of the head's landmarks lies at rest, mm: those of the skin where it is drawn.
     #[must_use]
-    pub fn landmark(&self, name: &str) -> Option<Vec3> {
+    pub fn landmark_places(&self) -> Vec<Vec3> {
+        let drawn = self.drawn_rest();
         self.landmarks
             .iter()
-            .find(|l| l.layer == Layer::Skin && l.name == name)
-            .map(|l| l.at.on(&self.skin.mesh.positions))
+            .map(|mark| match mark.layer {
+                Layer::Skin => mark.at.on(&drawn),
+                layer => mark.at.on(self.layer(layer)),
+            })
+            .collect()
     }
 
     /// The named line on the skin, where this head has it.

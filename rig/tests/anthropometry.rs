@@ -22,7 +22,8 @@ fn only_what_has_its_landmarks_is_measured() {
     for (name, vertex) in [("en_l", 10), ("en_r", 20), ("ex_l", 30), ("n", 40)] {
         put(&mut head, name, vertex);
     }
-    let at = |v: usize| head.skin.mesh.positions[v];
+    let drawn = head.drawn_rest();
+    let at = |v: usize| drawn[v];
     let found = measurements(&head);
     assert_eq!(found.len(), 1);
     assert_eq!((found[0].name.as_str(), found[0].sides_mm), ("en-en", None));
@@ -36,7 +37,8 @@ fn a_pair_is_measured_on_both_sides() {
     for (name, vertex) in [("t_l", 10), ("t_r", 20), ("gn", 30)] {
         put(&mut head, name, vertex);
     }
-    let at = |v: usize| head.skin.mesh.positions[v];
+    let drawn = head.drawn_rest();
+    let at = |v: usize| drawn[v];
     let found = measurements(&head);
     let [left, right] = found[0].sides_mm.unwrap();
     assert_eq!(found[0].name, "t-gn");

@@ -122,7 +122,7 @@ fn lips_stop_each_other() {
                 if (0.0..=1.0).contains(&share) {
                     let depth = p.y - (q.y + (r.y - q.y) * share);
                     assert!(
-                        !(0.4..12.0).contains(&depth),
+                        !(0.6..12.0).contains(&depth),
                         "the lower lip is {depth} mm inside the upper"
                     );
                 }

@@ -31,8 +31,8 @@ fn report(head: &Head) -> Value {
     let landmarks: Vec<Value> = head
         .landmarks
         .iter()
-        .map(|landmark| {
-            let at = landmark.at.on(head.layer(landmark.layer));
+        .zip(head.landmark_places())
+        .map(|(landmark, at)| {
             let layer = match landmark.layer {
                 Layer::Skin => "skin",
                 Layer::Skull => "skull",

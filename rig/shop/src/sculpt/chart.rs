@@ -15,8 +15,24 @@ pub(super) const BOTTOM: f32 = -105.0;
 const ALAR_POINTS: usize = 12;
 const JAW_POINTS: usize = 17;
 
+/// A surface that the chart sees edge on is stretched no more than this.
+const STRETCH_MAX: f32 = 2.2;
+/// How far round the face reaches in the chart, mm: behind it come the ears, where the chart jumps.
+const FACE_HALF: f32 = 95.0;
+
+/// Distance of points in the chart, mm: the wanted edge length, less where the surface runs away from the chart, as
+/// under nose and chin.
+fn spacing(target: &Target, p: Vec2) -> f32 {
+    if p.x > FACE_HALF {
+        return edge_length(p);
+    }
+    let up = vec2(0.0, 0.6);
+    let run = target.point(p + up).distance(target.point(p - up)) / (2.0 * up.y);
+    edge_length(p) / run.clamp(1.0, STRETCH_MAX).powf(0.75)
+}
+
 /// Wanted edge length at a place of the chart, mm: fine where the face moves or turns sharply.
-fn spacing(p: Vec2) -> f32 {
+fn edge_length(p: Vec2) -> f32 {
     let near = |centre: Vec2, half: Vec2| ((p - centre).abs() - half).max(Vec2::ZERO).length();
     let mouth = near(vec2(0.0, -38.0), vec2(40.0, 20.0));
     let eye = near(vec2(39.0, 36.0), vec2(22.0, 15.0));
@@ -37,29 +53,30 @@ pub(super) fn build(
     mouth: &[usize],
     holes: Vec<Vec<usize>>,
 ) -> Result<Vec<usize>, SculptError> {
-    let corner = |half: &Half, i: usize| half.vertices[i].chart;
-    let (below, above) = (corner(half, mouth[0]), corner(half, mouth[mouth.len() - 1]));
-    let mut outline = edge(half, target, vec2(0.0, BOTTOM), below);
+    let (first, last) = (mouth[0], mouth[mouth.len() - 1]);
+    let [below, above] = [first, last].map(|i| half.vertices[i].chart);
+    let corners = [
+        vec2(0.0, BOTTOM),
+        vec2(0.0, TOP),
+        vec2(BACK, TOP),
+        vec2(BACK, BOTTOM),
+    ];
+    let [low, high, high_back, low_back] = corners.map(|chart| half.on_chart(target, chart));
+    let mut between = |from: Vec2, to: Vec2| between(half, target, from, to);
+    let upper = between(corners[1], corners[2]);
+    let mut outline = vec![low];
+    outline.extend(between(corners[0], below));
     outline.extend(mouth);
-    outline.extend(
-        edge(half, target, above, vec2(0.0, TOP))
-            .into_iter()
-            .skip(1),
-    );
-    let upper = edge(half, target, vec2(0.0, TOP), vec2(BACK, TOP));
-    let lower = edge(half, target, vec2(BACK, BOTTOM), vec2(0.0, BOTTOM));
+    outline.extend(between(above, corners[1]));
+    outline.push(high);
     outline.extend(&upper);
-    let last = half.on_chart(target, vec2(BACK, TOP));
-    outline.push(last);
-    outline.extend(
-        edge(half, target, vec2(BACK, TOP), vec2(BACK, BOTTOM))
-            .into_iter()
-            .skip(1),
-    );
-    outline.extend(lower);
+    outline.push(high_back);
+    outline.extend(between(corners[2], corners[3]));
+    outline.push(low_back);
+    outline.extend(between(corners[3], corners[0]));
     let mut lines = Vec::new();
     for points in [
-        evenly(&target.curves.alar_crease[..33], ALAR_POINTS),
+        evenly(&target.curves.alar_crease[..31], ALAR_POINTS),
         evenly(&target.curves.jaw_line, JAW_POINTS)[1..].to_vec(),
     ] {
         let line: Vec<usize> = points.into_iter().map(|p| half.on_skin(p)).collect();
@@ -73,7 +90,7 @@ pub(super) fn build(
         outline,
         holes,
         lines,
-        spacing: &spacing,
+        spacing: &|p| spacing(target, p),
     };
     let (points, triangles) = fill(&half.charts(), &region)?;
     for chart in points {
@@ -83,29 +100,29 @@ pub(super) fn build(
     for t in triangles {
         half.triangle(t, false);
     }
-    for &i in &upper[1..] {
+    for &i in &upper {
         half.vertices[i].free = true;
     }
-    let mut border = upper;
-    border.push(last);
+    let mut border = vec![high];
+    border.extend(upper);
+    border.push(high_back);
     Ok(border)
 }
 
-/// Vertices from one place of the chart to another at the wanted spacing, the last place left out.
-fn edge(half: &mut Half, target: &Target, from: Vec2, to: Vec2) -> Vec<usize> {
+/// Vertices between two places of the chart at the wanted spacing, those places left out.
+fn between(half: &mut Half, target: &Target, from: Vec2, to: Vec2) -> Vec<usize> {
     // Walk by the wanted lengths, then stretch the walk so that it ends where it should.
-    let (total, mut shares, mut at) = (from.distance(to), vec![0.0], 0.0);
+    let total = from.distance(to);
+    let (mut shares, mut at) = (Vec::new(), 0.0);
     while at < total {
-        at += spacing(from.lerp(to, at / total));
+        at += spacing(target, from.lerp(to, at / total));
         shares.push(at);
     }
-    let stretch = if at - total > 0.5 * spacing(to) && shares.len() > 2 {
+    let beyond = at - total > 0.5 * spacing(target, to);
+    if beyond && shares.len() > 1 {
         shares.pop();
-        shares[shares.len() - 1]
-    } else {
-        at
-    };
-    shares.pop();
+    }
+    let stretch = shares.pop().unwrap_or(total);
     shares
         .into_iter()
         .map(|s| half.on_chart(target, from.lerp(to, s / stretch)))

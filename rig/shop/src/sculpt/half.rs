@@ -93,6 +93,15 @@ impl Half {
             .extend(line.windows(2).map(|w| [w[0].min(w[1]), w[0].max(w[1])]));
     }
 
+    /// Whether every vertex belongs to a triangle.
+    pub(super) fn all_used(&self) -> bool {
+        let mut used = vec![false; self.vertices.len()];
+        for &i in self.triangles.iter().flatten() {
+            used[i] = true;
+        }
+        used.into_iter().all(|used| used)
+    }
+
     pub(super) fn charts(&self) -> Vec<ChartPoint> {
         self.vertices.iter().map(|v| v.chart).collect()
     }

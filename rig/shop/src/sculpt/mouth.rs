@@ -6,19 +6,19 @@ use mouthpiece_rig::LIP_LEVELS;
 use mouthpiece_rig::lip_level::{CONTACT, INNER};
 
 use super::half::Half;
-use super::polyline::{at_x, superellipse};
+use super::polyline::{at_x, evenly, superellipse};
 use super::target::{ChartPoint, Target, chart_of};
 
 /// Columns from the mid line to the corner of the mouth, both included.
-const STATIONS: usize = 15;
+const STATIONS: usize = 20;
 const CORNER: usize = STATIONS - 1;
 /// Where the slit between the lips ends; the corner's skin (cheilion) lies a little further out.
 const SLIT_END: Vec3 = vec3(24.2, -35.0, 101.9);
 const CHEILION_X: f32 = 26.4;
-/// How far along the way from the border to the contact line the levels between them lie.
-const LEVELS: [f32; CONTACT + 1] = [0.0, 0.24, 0.45, 0.64, 0.83, 1.0];
-/// Share of the closing of the lips that each of those levels takes part in.
-const CLOSING: [f32; CONTACT + 1] = [0.0, 0.12, 0.3, 0.5, 0.75, 1.0];
+/// Share of the way from the border to the contact line on which a look from the front sees the lip itself.
+const SEEN: f32 = 0.84;
+/// The red is not divided finer than this, mm: towards the corner it becomes low.
+const LOW_MM: f32 = 0.9;
 /// The inner side: upwards and backwards from the contact line, mm.
 const INSIDE: [(f32, f32); LIP_LEVELS - INNER] = [(0.0, 2.2), (3.0, 3.7), (8.6, 4.2)];
 /// Rings on the skin round the border: how far along the way to the outermost, which is a superellipse in the chart.
@@ -40,8 +40,17 @@ pub(super) struct Mouth {
 
 /// A column of one lip.
 struct Column {
-    chart: [ChartPoint; CONTACT + 1],
-    points: [Vec3; LIP_LEVELS],
+    /// From the border to the contact line, evenly spaced: fewer than levels where the red is low.
+    red: Vec<Vec3>,
+    inside: [Vec3; LIP_LEVELS - INNER],
+}
+
+impl Column {
+    /// Which point of the red a level is: neighbouring levels share points where there are few.
+    fn point(&self, level: usize) -> usize {
+        let last = self.red.len() - 1;
+        (level * last + CONTACT / 2) / CONTACT
+    }
 }
 
 /// Places the lips and the rings round them.
@@ -104,8 +113,9 @@ pub(super) fn build(half: &mut Half, target: &Target) -> Mouth {
 /// One lip's columns, from the mid line to the corner. `sign` is 1 for the upper lip.
 ///
 /// The surface data holds the lips 0.8 mm apart; here they meet at rest, since a mouth at rest is closed: the contact
-/// line goes to the middle, the levels before it a part of the way.
+/// line goes to the middle, what lies before it a part of the way.
 fn columns(target: &Target, sign: f32) -> Vec<Column> {
+    const STEPS: usize = 24;
     let curves = &target.curves;
     let (vermilion, own, other) = if sign > 0.0 {
         (
@@ -128,70 +138,94 @@ fn columns(target: &Target, sign: f32) -> Vec<Column> {
             last.lerp(SLIT_END, (x - last.x) / (SLIT_END.x - last.x))
         }
     };
+    let fine = |i: usize| SLIT_END.x * i as f32 / (4 * STEPS) as f32;
+    let meeting = |x: f32| (contact(own, x) + contact(other, x)) * 0.5;
+    let slit: Vec<Vec3> = (0..=4 * STEPS).map(|i| meeting(fine(i))).collect();
+    let slit = evenly(&slit, STATIONS);
+    let mut border: Vec<Vec3> = vermilion
+        .iter()
+        .filter(|p| p.x < CHEILION_X - 1.5)
+        .copied()
+        .collect();
+    border.push(target.seen_from_front(CHEILION_X, -35.2));
+    let border = evenly(&border, STATIONS);
     (0..STATIONS)
         .map(|i| {
             let share = i as f32 / CORNER as f32;
-            let corner = i == CORNER;
-            let x = SLIT_END.x * share;
-            let meeting = (contact(own, x) + contact(other, x)) * 0.5;
-            let closing = meeting - contact(own, x);
-            let border = if corner {
-                target.seen_from_front(CHEILION_X, -35.2)
-            } else {
-                at_x(vermilion, x + (CHEILION_X - SLIT_END.x) * share.powi(4))
-            };
-            let (from, to) = (chart_of(border), chart_of(meeting));
+            let meeting = slit[i];
+            let closing = meeting - contact(own, meeting.x);
+            let (from, to) = (chart_of(border[i]), chart_of(meeting));
+            let mut way: Vec<Vec3> = (0..STEPS)
+                .map(|k| SEEN * k as f32 / (STEPS - 1) as f32)
+                .map(|f| target.point(from.lerp(to, f)) + closing * f.powf(1.5))
+                .collect();
+            way[0] = border[i];
+            way.push(meeting);
+            let length: f32 = way.windows(2).map(|w| w[0].distance(w[1])).sum();
+            let segments = ((length / LOW_MM) as usize).clamp(1, CONTACT);
+            let segments = if i == CORNER { 1 } else { segments };
             let narrow = 1.0 - 0.5 * share.powi(3);
-            let mut points = [meeting; LIP_LEVELS];
-            let mut chart = [to; CONTACT + 1];
-            for level in 0..CONTACT {
-                chart[level] = from.lerp(to, LEVELS[level]);
-                points[level] = target.point(chart[level]) + closing * CLOSING[level];
-            }
-            points[0] = border;
-            for (point, (rise, back)) in points[INNER..].iter_mut().zip(INSIDE) {
+            let inside = INSIDE.map(|(rise, back)| {
                 // At the corner the inner side runs straight back.
-                let (rise, back) = if corner {
+                let (rise, back) = if i == CORNER {
                     (0.0, 0.5 * (back + rise))
                 } else {
                     (sign * rise * narrow, back)
                 };
-                *point = meeting + vec3(-0.05 * x * share * back / 6.0, rise, -back);
-            }
-            Column { chart, points }
+                meeting + vec3(-0.05 * meeting.x * share * back / 6.0, rise, -back)
+            });
+            let mut red = evenly(&way, segments + 1);
+            // To the bit, so that both lips' lines are one.
+            red[segments] = meeting;
+            Column { red, inside }
         })
         .collect()
 }
 
-/// Pushes the vertices of one lip. At the corner both lips share theirs, of which there are two on the skin (border and
-/// contact) and those of the inner side.
+/// Pushes the vertices of one lip. At the corner both lips share theirs.
 fn place(half: &mut Half, columns: &[Column], corner: Option<[usize; LIP_LEVELS]>) -> Rows {
-    const RED: [f32; CONTACT + 1] = [0.45, 1.0, 1.0, 1.0, 1.0, 1.0];
-    const WET: [f32; CONTACT + 1] = [0.0, 0.0, 0.0, 0.08, 0.2, 0.5];
     let mut rows = Rows::new();
     for (i, column) in columns.iter().enumerate() {
-        let at_corner = i == CORNER;
-        if let (true, Some(shared)) = (at_corner, corner) {
+        if let (CORNER, Some(shared)) = (i, corner) {
             rows.push(shared);
             continue;
         }
-        let mut numbers = [usize::MAX; LIP_LEVELS];
-        for level in 0..LIP_LEVELS {
-            numbers[level] = match (CORNER - i, level) {
-                (0 | 1, 1 | 2) => numbers[0],
-                (0 | 1, 4 | CONTACT) => numbers[3],
-                (0 | 1, 3) => half.push(column.points[CONTACT], column.chart[CONTACT]),
-                // Towards the corner the red is too low for all its levels.
-                (2, 2 | 4) => numbers[level - 1],
-                _ => half.push(column.points[level], column.chart[level.min(CONTACT)]),
+        let last = column.red.len() - 1;
+        let red: Vec<usize> = column
+            .red
+            .iter()
+            .enumerate()
+            .map(|(k, &p)| {
+                let v = half.on_skin(p);
+                let inwards = k as f32 / last as f32;
+                let vertex = &mut half.vertices[v];
+                vertex.vermilion = match k {
+                    0 if i == CORNER => 0.14,
+                    0 => 0.45,
+                    _ => 1.0,
+                };
+                vertex.wet = 0.5 * ((inwards - 0.4).max(0.0) / 0.6).powi(2);
+                v
+            })
+            .collect();
+        let chart = half.vertices[red[last]].chart;
+        let inside = column.inside.map(|p| {
+            let v = half.push(p, chart);
+            half.vertices[v].vermilion = 1.0;
+            half.vertices[v].wet = 1.0;
+            v
+        });
+        let mut numbers = [0; LIP_LEVELS];
+        for (level, number) in numbers.iter_mut().enumerate() {
+            *number = match level.checked_sub(INNER) {
+                Some(k) => inside[k],
+                None => red[column.point(level)],
             };
-            let vertex = &mut half.vertices[numbers[level]];
-            let fade = if at_corner && level < 3 { 0.3 } else { 1.0 };
-            vertex.vermilion = fade * RED.get(level).copied().unwrap_or(1.0);
-            vertex.wet = WET.get(level).copied().unwrap_or(1.0);
-            if i == 0 {
-                vertex.position.x = 0.0;
-                vertex.chart.x = 0.0;
+        }
+        if i == 0 {
+            for &v in red.iter().chain(&inside) {
+                half.vertices[v].position.x = 0.0;
+                half.vertices[v].chart.x = 0.0;
             }
         }
         rows.push(numbers);

@@ -36,34 +36,6 @@ pub(super) fn at_x(line: &[Vec3], x: f32) -> Vec3 {
     line.last().copied().unwrap_or_default()
 }
 
-/// A closed curve, resampled by angle about `centre` as seen from the front, `count` points
-/// counter-clockwise from +x; `squash` evens out long curves (height is multiplied by it).
-pub(super) fn by_angle(curve: &[Vec3], centre: Vec3, squash: f32, count: usize) -> Vec<Vec3> {
-    let angle = |p: Vec3| ((p.y - centre.y) * squash).atan2(p.x - centre.x);
-    (0..count)
-        .map(|i| {
-            let wanted = std::f32::consts::TAU * (i as f32 + 0.5) / count as f32;
-            for j in 0..curve.len() {
-                let (a, b) = (curve[j], curve[(j + 1) % curve.len()]);
-                let (ta, tb) = (angle(a), angle(b));
-                let span = turn(tb - ta);
-                let part = turn(wanted - ta);
-                let share = part / if span.abs() < 1e-9 { 1e-9 } else { span };
-                if (0.0..1.0).contains(&share) && span.abs() < 1.5 {
-                    return a.lerp(b, share);
-                }
-            }
-            curve[0]
-        })
-        .collect()
-}
-
-/// An angle brought into -pi..pi.
-fn turn(angle: f32) -> f32 {
-    use std::f32::consts::{PI, TAU};
-    (angle + PI).rem_euclid(TAU) - PI
-}
-
 /// The point of a superellipse with half axes `half` in the direction `turn` (0 along +x, counter-clockwise).
 pub(super) fn superellipse(turn: f32, half: Vec2, exponent: f32) -> Vec2 {
     let part = |v: f32| v.abs().powf(2.0 / exponent).copysign(v);

@@ -28,6 +28,7 @@ pub(super) fn build(target: &Target, eyes: &Eyes) -> Result<(Skin, Lips, Vec<Lid
     let border = chart::build(&mut half, target, &mouth.outline, holes)?;
     crown::build(&mut half, target, &border)?;
     relax::relax(&mut half, target);
+    debug_assert!(half.all_used(), "a feature line runs through an opening");
     Ok(mirror(
         &half,
         &mouth.upper,

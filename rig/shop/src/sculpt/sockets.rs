@@ -4,7 +4,7 @@ use glam::{Vec2, Vec3, vec2, vec3};
 
 use super::eyes::Eyes;
 use super::half::{Half, closed, middle};
-use super::polyline::{by_angle, superellipse};
+use super::polyline::{evenly, superellipse};
 use super::target::{ChartPoint, Target, chart_of};
 
 /// Vertices round a lid margin.
@@ -31,7 +31,8 @@ pub(super) struct Eye {
 pub(super) fn eye(half: &mut Half, target: &Target, eyes: &Eyes) -> Eye {
     let curves = &target.curves;
     let centre = middle(&curves.lid_margin_outer);
-    let outer: Vec<usize> = by_angle(&curves.lid_margin_outer, centre, Eyes::SQUASH, LIDS)
+    let temple = centre + vec3(40.0, 0.0, -20.0);
+    let outer: Vec<usize> = round(&curves.lid_margin_outer, temple, LIDS)
         .into_iter()
         .map(|p| half.on_skin(p))
         .collect();
@@ -39,7 +40,7 @@ pub(super) fn eye(half: &mut Half, target: &Target, eyes: &Eyes) -> Eye {
         eyes.centre + (p - eyes.centre).normalize_or(Vec3::Z) * (eyes.radius + height)
     };
     let (mut inner, mut behind) = (Vec::new(), Vec::new());
-    let inside = by_angle(&curves.lid_margin_inner, centre, Eyes::SQUASH, LIDS);
+    let inside = round(&curves.lid_margin_inner, temple, LIDS);
     for (p, &o) in inside.into_iter().zip(&outer) {
         let chart = half.vertices[o].chart;
         half.vertices[o].wet = 0.1;
@@ -117,24 +118,18 @@ fn crossing(a: Vec2, b: Vec2, line: &[Vec2]) -> Option<f32> {
     })
 }
 
-/// Vertices round a nostril, and the way out of it to the ring round it, mm in the chart.
-const NOSTRIL: usize = 12;
-const NOSTRIL_RING_MM: f32 = 1.5;
+/// Vertices round a nostril, and the way out of it to the ring round it, mm.
+const NOSTRIL: usize = 14;
+const NOSTRIL_RING_MM: f32 = 1.6;
 
 /// Places the left nostril with its depth; gives the ring round it.
 pub(super) fn nostril(half: &mut Half, target: &Target) -> Vec<usize> {
     let curves = &target.curves;
-    let rim: Vec<usize> = by_angle(
-        &curves.nostril_rim,
-        middle(&curves.nostril_rim),
-        1.6,
-        NOSTRIL,
-    )
-    .into_iter()
-    .map(|p| half.on_skin(p))
-    .collect();
-    let inside = middle(&curves.nostril_inner);
-    let inner = by_angle(&curves.nostril_inner, inside, 1.6, NOSTRIL);
+    let centre = middle(&curves.nostril_rim);
+    let around = round(&curves.nostril_rim, centre + vec3(20.0, 0.0, 0.0), NOSTRIL);
+    let rim: Vec<usize> = around.iter().map(|&p| half.on_skin(p)).collect();
+    let inner = round(&curves.nostril_inner, around[0], NOSTRIL);
+    let inside = middle(&inner);
     let up = vec3(0.8, 7.5, -2.5);
     let first = half.vertices.len();
     let mut outer = rim.clone();
@@ -151,20 +146,42 @@ pub(super) fn nostril(half: &mut Half, target: &Target) -> Vec<usize> {
         outer = ring;
     }
     let chart = half.vertices[rim[0]].chart;
-    let apex = half.push(inside + up * 1.0, chart);
+    let apex = half.push(inside + up, chart);
     half.strip(&closed(&outer), &vec![apex; outer.len() + 1], false);
     for v in &mut half.vertices[first..] {
         v.lit = 0.12;
     }
-    let centre = chart_of(middle(&curves.nostril_rim));
-    let ring: Vec<usize> = rim
+    let ring: Vec<usize> = around
         .iter()
-        .map(|&i| {
-            let from = half.vertices[i].chart;
-            let chart = from + (from - centre).normalize_or_zero() * NOSTRIL_RING_MM;
-            half.on_chart(target, chart)
+        .map(|&p| {
+            let out = p + (p - centre).normalize_or(Vec3::X) * NOSTRIL_RING_MM;
+            half.on_skin(target.beside(out))
         })
         .collect();
     half.strip(&closed(&ring), &closed(&rim), false);
     ring
+}
+
+/// Points at equal lengths along a closed curve from its place nearest to `start`, counter-clockwise as seen in the
+/// chart.
+fn round(curve: &[Vec3], start: Vec3, count: usize) -> Vec<Vec3> {
+    let far = |i: &usize| curve[*i].distance(start);
+    let first = (0..curve.len())
+        .min_by(|a, b| far(a).total_cmp(&far(b)))
+        .unwrap_or(0);
+    let mut line: Vec<Vec3> = curve[first..]
+        .iter()
+        .chain(&curve[..=first])
+        .copied()
+        .collect();
+    let area: f32 = line
+        .windows(2)
+        .map(|w| chart_of(w[0]).perp_dot(chart_of(w[1])))
+        .sum();
+    if area < 0.0 {
+        line.reverse();
+    }
+    let mut points = evenly(&line, count + 1);
+    points.pop();
+    points
 }

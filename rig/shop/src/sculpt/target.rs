@@ -141,6 +141,11 @@ impl Target {
             .map(|hit| hit.point)
     }
 
+    /// The nearest place of the skin.
+    pub(super) fn beside(&self, p: Vec3) -> Vec3 {
+        self.surface.closest(p, FAR).map_or(p, |hit| hit.point)
+    }
+
     /// The nearest place of the skin whose outside looks about as `normal` does.
     pub(super) fn nearest(&self, p: Vec3, normal: Vec3, reach: f32) -> Option<Vec3> {
         let facing = Facing {
