@@ -3,11 +3,11 @@
 use std::io::Write as _;
 
 use anyhow::Context as _;
-use indicatif::{ProgressBar, ProgressStyle};
+use indicatif::{ProgressBar, ProgressFinish, ProgressStyle};
 use mouthpiece_rig::Head;
-use mouthpiece_shop::landmarks::Landmarks;
+use mouthpiece_shop::landmarks::{Landmarks, Unit};
 use mouthpiece_shop::mesh;
-use mouthpiece_shop::refit::{FitReport, Fitted, Options, Stage, fit_head};
+use mouthpiece_shop::refit::{FitReport, Fitted, Options, RefitError, Stage, fit_head};
 
 use crate::cli::FitArgs;
 use crate::interrupt;
@@ -35,7 +35,7 @@ pub fn run(args: &FitArgs) -> anyhow::Result<()> {
     interrupt::check()?;
     let options = Options {
         scan: mesh::Options {
-            mm_per_unit: args.unit.map(|unit| unit.mm()),
+            mm_per_unit: args.unit.map(Unit::mm),
             scan_file: args.scan.display().to_string(),
             landmarks_file: args.landmarks.display().to_string(),
         },
@@ -45,14 +45,11 @@ pub fn run(args: &FitArgs) -> anyhow::Result<()> {
         bar.set_message(stage.words());
         bar.inc(1);
     });
-    // Whose fault it is, scan or landmarks, the message says itself where it knows.
-    let fitted = fitted.with_context(|| args.scan.display().to_string());
     let Fitted { head, report } = match fitted {
         Ok(fitted) => fitted,
-        Err(error) => {
-            bar.finish_and_clear();
-            return Err(named_once(error));
-        }
+        // This one names the file itself: the scan's or the landmarks'.
+        Err(RefitError::Prepare(cause)) => return Err(cause.into()),
+        Err(cause) => return Err(cause).with_context(|| args.scan.display().to_string()),
     };
     bar.set_message("writing");
     interrupt::check()?;
@@ -85,22 +82,15 @@ pub fn run(args: &FitArgs) -> anyhow::Result<()> {
     })
 }
 
-/// Without the scan's name in front where the message has one.
-fn named_once(error: anyhow::Error) -> anyhow::Error {
-    use mouthpiece_shop::refit::RefitError;
-    match error.downcast::<RefitError>() {
-        Ok(RefitError::Prepare(cause)) => cause.into(),
-        Ok(other) => other.into(),
-        Err(error) => error,
-    }
-}
-
 fn bar() -> ProgressBar {
     // Reading and writing, and what is between them.
-    ProgressBar::new(Stage::ALL.len() as u64 + 1).with_style(
-        ProgressStyle::with_template("{bar:24} {msg}")
-            .unwrap_or_else(|_| ProgressStyle::default_bar()),
-    )
+    ProgressBar::new(Stage::ALL.len() as u64 + 1)
+        .with_style(
+            ProgressStyle::with_template("{bar:24} {msg}")
+                .unwrap_or_else(|_| ProgressStyle::default_bar()),
+        )
+        // Whatever ends the work, the bar makes room for what is said about it.
+        .with_finish(ProgressFinish::AndClear)
 }
 
 /// What the user should know about this scan.
