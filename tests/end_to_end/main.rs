@@ -6,6 +6,7 @@
 //! | `export` | videos: in step, the same every time, whole or not there |
 //! | `head` | head files: spoken with, looked at, refused |
 //! | `head_fit` | scans made heads, and what is no scan refused |
+//! | `head_landmarks` | the marking window where there is no display |
 //! | `labels` | label files of every sad kind, and the round trip |
 //! | `sound` | sound files of every kind |
 //! | `usage` | exit statuses, help, what doctor and bench print |
@@ -24,6 +25,7 @@ mod export;
 mod graphics;
 mod head;
 mod head_fit;
+mod head_landmarks;
 mod house;
 mod labels;
 mod mouth;
