@@ -268,7 +268,7 @@ fn one_exchanged_pair_and_one_stray_are_named() {
 #[test]
 fn what_was_saved_comes_back_with_its_unit() {
     // In metres, on its side, as a scanner's axes may be.
-    let turn = Quat::from_rotation_x(1.5707);
+    let turn = Quat::from_rotation_x(1.5);
     let by = |p: DVec3| turn.as_dquat() * p / 1000.0 + DVec3::new(0.3, -1.2, 0.1);
     let (scan, placed) = shapes::moved(&shapes::head(), &shapes::landmarks(), by);
     let mut first = marking(&scan);
