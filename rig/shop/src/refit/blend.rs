@@ -109,18 +109,26 @@ pub(super) fn blend(base: &ColourMap, layer: &Layer) -> ColourMap {
     let inside = depths(&grid);
     let tone = continued(&grid);
     let mut map = base.clone();
+    // One row of cells between two, so that each texel is between two of its cells only.
+    let mut line = vec![(Vec3::ZERO, 0.0); grid.width];
     for y in 0..base.height {
-        let row = (y as f32 + 0.5) / CELL as f32 - 0.5;
+        let (upper, lower, down) = between((y as f32 + 0.5) / CELL as f32 - 0.5);
+        let row = |y: i64| y.clamp(0, grid.height as i64 - 1) as usize * grid.width;
+        let (upper, lower) = (row(upper), row(lower));
+        for (x, cell) in line.iter_mut().enumerate() {
+            let (a, b) = (upper + x, lower + x);
+            *cell = (
+                tone[a].lerp(tone[b], down),
+                inside[a] + (inside[b] - inside[a]) * down,
+            );
+        }
         for x in 0..base.width {
             let at = y * base.width + x;
-            let column = (x as f32 + 0.5) / CELL as f32 - 0.5;
-            let corners = corners(&grid, column, row);
-            let mut off = Vec3::ZERO;
-            let mut depth = 0.0;
-            for (i, share) in corners {
-                off += tone[i] * share;
-                depth += inside[i] * share;
-            }
+            let (left, right, over) = between((x as f32 + 0.5) / CELL as f32 - 0.5);
+            let cell = |x: i64| line[x.rem_euclid(grid.width as i64) as usize];
+            let ((tone_a, depth_a), (tone_b, depth_b)) = (cell(left), cell(right));
+            let off = tone_a.lerp(tone_b, over);
+            let depth = depth_a + (depth_b - depth_a) * over;
             let pixel = &mut map.rgb[3 * at..3 * at + 3];
             let under = Vec3::new(pixel[0].into(), pixel[1].into(), pixel[2].into()) + off;
             let mixed = if layer.there[at] {
@@ -138,19 +146,24 @@ pub(super) fn blend(base: &ColourMap, layer: &Layer) -> ColourMap {
     map
 }
 
+/// The two cells on both sides of a place, and the share of the second.
+fn between(place: f32) -> (i64, i64, f32) {
+    let first = place.floor();
+    (first as i64, first as i64 + 1, place - first)
+}
+
 /// The four cells round a place, and their shares.
 fn corners(grid: &Grid, column: f32, row: f32) -> [(usize, f32); 4] {
-    let (x, y) = (column.floor(), row.floor());
-    let (fx, fy) = (column - x, row - y);
+    let (x, right, fx) = between(column);
+    let (y, low, fy) = between(row);
     let wrap = |x: i64| x.rem_euclid(grid.width as i64) as usize;
     let clamp = |y: i64| y.clamp(0, grid.height as i64 - 1) as usize;
-    let (x, y) = (x as i64, y as i64);
     let at = |x: i64, y: i64| clamp(y) * grid.width + wrap(x);
     [
         (at(x, y), (1.0 - fx) * (1.0 - fy)),
-        (at(x + 1, y), fx * (1.0 - fy)),
-        (at(x, y + 1), (1.0 - fx) * fy),
-        (at(x + 1, y + 1), fx * fy),
+        (at(right, y), fx * (1.0 - fy)),
+        (at(x, low), (1.0 - fx) * fy),
+        (at(right, low), fx * fy),
     ]
 }
 
