@@ -242,7 +242,8 @@ pub struct LabelsArgs {
 #[derive(Debug, Args)]
 #[command(
     after_help = "Examples:\n  mouthpiece still -o face.png\n  mouthpiece still --phone aa --view 34 --size 800x800 --tier high -o aa.png\n  \
-                  mouthpiece still --controls '{\"jaw_rad\": 0.2, \"zygomaticus_major\": 0.8}' -o grin.png"
+                  mouthpiece still --controls '{\"jaw_rad\": 0.2, \"zygomaticus_major\": 0.8}' -o grin.png\n  \
+                  mouthpiece still --phone uw --outline uw.json -o uw.png"
 )]
 pub struct StillArgs {
     /// Control values by name as JSON, or a file with them
@@ -258,6 +259,14 @@ pub struct StillArgs {
     /// Size of the picture in pixels
     #[arg(long, value_name = "WxH", default_value = "640x480")]
     pub size: Size,
+    /// Also write where lips, lids and landmarks lie in the picture, as JSON
+    ///
+    /// Points are [x, y] in pixels from the upper left corner. lips.outer (the border of the red) and lips.inner
+    /// (where the lips touch) are closed lines from the subject's right corner over the upper lip to the left one and
+    /// back along the lower lip; lids.left and lids.right, the subject's, hold the margins upper and lower; landmarks
+    /// holds Farkas's points by name. What nearer skin hides is listed too.
+    #[arg(long, value_name = "F.json", verbatim_doc_comment)]
+    pub outline: Option<PathBuf>,
     /// Where to write: a .png file
     #[arg(short, long, value_name = "F.png")]
     pub output: PathBuf,

@@ -1,5 +1,7 @@
 //! `mouthpiece still`: one picture of a settled face.
 
+mod outline;
+
 use std::collections::BTreeMap;
 use std::sync::Arc;
 
@@ -26,8 +28,14 @@ pub fn run(args: &StillArgs) -> anyhow::Result<()> {
     let gpu = Gpu::headless()?;
     let size = (args.size.width, args.size.height);
     let mut offscreen = Offscreen::new(&gpu, &cast.head, size, args.look.tier.into())?;
-    let rgba = offscreen.render(&frame, &args.look.view())?;
-    output::write(&args.output, &frames::png(rgba, size.0, size.1)?)
+    let view = args.look.view();
+    let rgba = offscreen.render(&frame, &view)?;
+    output::write(&args.output, &frames::png(rgba, size.0, size.1)?)?;
+    if let Some(path) = &args.outline {
+        let outline = outline::outline(&cast.head, &frame, &view, size)?;
+        output::write(path, &serde_json::to_vec_pretty(&outline)?)?;
+    }
+    Ok(())
 }
 
 /// The head at rest under `controls`.

@@ -29,6 +29,7 @@ mod head_landmarks;
 mod house;
 mod labels;
 mod mouth;
+mod outline;
 mod readme;
 mod sound;
 mod still;
