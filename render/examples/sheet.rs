@@ -9,9 +9,7 @@ use std::sync::Arc;
 use std::time::Instant;
 
 use mouthpiece_render::{Background, Camera, Gpu, Offscreen, Tier, View};
-use mouthpiece_rig::{
-    Articulation, Calibration, Control, Head, KeyFrame, STEP_TICKS, Simulation, TICK_RATE,
-};
+use mouthpiece_rig::{Articulation, Control, Head, KeyFrame, STEP_TICKS, Simulation, TICK_RATE};
 
 /// Pictures of the sheet: name, where from, jaw (rad) and lip aperture (mm), width, protrusion (mm), lids, gaze and turn.
 const POSES: &[(&str, Camera, [f32; 4], [f32; 3])] = &[
