@@ -14,6 +14,9 @@ override SAMPLES: u32 = 4u;
 const DARK: vec3<f32> = vec3(0.016, 0.0095, 0.0062);
 const PALE: vec3<f32> = vec3(0.150, 0.092, 0.056);
 
+// Colour of what the strands' surface mirrors: white on a single hair; between many it has met others.
+const SHINE: vec3<f32> = vec3(1.0, 0.80, 0.62);
+
 struct HairFragment {
     @builtin(position) clip: vec4<f32>,
     // Place in the map; light that strands mirror: at their surface, and once through them.
@@ -76,6 +79,6 @@ fn hair(in: HairFragment) -> @location(0) vec4<f32> {
     }
     let tone = select(map.r, 0.46, cap);
     let base = mix(DARK, PALE, tone * tone);
-    let light = base * (in.light + vec3(in.places.w * map.b)) + vec3(in.places.z * (0.25 + map.b) * tone);
+    let light = base * (in.light + vec3(in.places.w * map.b)) + SHINE * (in.places.z * (0.25 + map.b) * tone);
     return vec4(developed(light).rgb, cover);
 }
