@@ -1,9 +1,13 @@
 #!/usr/bin/env python3
-"""Draws reference.png: the reference head, six expressions from three sides (see README.md). Needs Pillow."""
+"""Draws reference.png: the reference head, six expressions from three sides (see README.md). Needs Pillow.
+
+Options given here are handed to `mouthpiece still`, as `--head OTHER.glb`.
+"""
 
 import io
 import json
 import subprocess
+import sys
 import tempfile
 from pathlib import Path
 
@@ -22,7 +26,7 @@ def still(args, view):
     with tempfile.TemporaryDirectory() as folder:
         path = Path(folder) / "still.png"
         size = f"{WIDTH * SCALE}x{HEIGHT * SCALE}"
-        command = [BINARY, "still", "--size", size, "--tier", "high", "--view", view, *args, "-o", path]
+        command = [BINARY, "still", "--size", size, "--tier", "high", "--view", view, *args, *sys.argv[1:], "-o", path]
         subprocess.run(list(map(str, command)), check=True)
         return Image.open(path).convert("RGB").resize((WIDTH, HEIGHT), Image.LANCZOS)
 

@@ -8,7 +8,7 @@ use crate::lines::{CHART_MM, Hairline, waver_mm};
 use crate::noise::{Dice, ramp};
 
 /// Hairs a mm of the line.
-const HAIRS_PER_MM: f32 = 15.0;
+const HAIRS_PER_MM: f32 = 24.0;
 
 pub(super) fn paint(hairline: Option<&Hairline>, width: usize, height: usize) -> Cover {
     let mut field = Field::new(width, height);
@@ -24,9 +24,9 @@ pub(super) fn paint(hairline: Option<&Hairline>, width: usize, height: usize) ->
                 // No line: it wavers.
                 let waver = waver_mm(on_line);
                 let share = dice.roll();
-                let depth = waver - 3.5 + 13.0 * share.sqrt();
+                let depth = waver - 5.0 + 13.0 * share.sqrt();
                 let root = on_line + inward * depth;
-                let grown = ramp(-3.5, 4.0, depth - waver);
+                let grown = ramp(-5.0, 2.5, depth - waver);
                 // Up from the forehead to the side it is brushed to; down and back on the sides.
                 let lateral = ramp(
                     60.0,
