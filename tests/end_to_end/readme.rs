@@ -30,7 +30,13 @@ fn the_commands_of_the_readme_exist_with_their_options() {
         };
         let mut words = line[at..].split_whitespace().skip(1);
         let command = words.next().unwrap_or_default();
-        let help = binary::run(&[command, "--help"]);
+        // The head shop's commands are two words.
+        let mut called = vec![command];
+        if command == "head" {
+            called.extend(words.next());
+        }
+        called.push("--help");
+        let help = binary::run(&called);
         let help = help.expect_done().text();
         for option in words
             .take_while(|w| *w != "#")

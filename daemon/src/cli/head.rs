@@ -5,8 +5,11 @@ use std::path::PathBuf;
 use clap::{Args, Subcommand};
 use mouthpiece_shop::landmarks::Unit;
 
-/// The head shop: what is in a head file, and how its mouth answers
+/// The head shop: make a head of a scan, look into one, learn its mouth
 #[derive(Debug, Subcommand)]
+#[command(after_help = "Examples:\n  mouthpiece head landmarks anna.ply\n  \
+                  mouthpiece head fit anna.ply --landmarks anna.landmarks.json -o anna.glb\n  \
+                  mouthpiece say --demo --head anna.glb")]
 pub enum HeadCommand {
     Info(InfoArgs),
     Fit(FitArgs),
