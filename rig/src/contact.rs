@@ -7,8 +7,8 @@
 
 use glam::{Affine3A, Vec3, Vec3A, vec3};
 
-use crate::head::LIP_LEVELS;
-use crate::head::lip_level::CREST;
+use crate::mesh::LIP_LEVELS;
+use crate::mesh::lip_level::CREST;
 use crate::tissue::Tissue;
 use crate::{Eye, Head, Placement};
 

@@ -7,7 +7,8 @@
 //! | `calibration` | an articulation turned into one head's muscles |
 //! | `control` | one number per muscle, jaw, tongue, lid, gaze and head angle |
 //! | `file` | a head as a .glb file |
-//! | `head` | a head as data: skin, rigid parts, the bodies they hang on |
+//! | `head` | a head as data, with its landmarks, and where its bodies are |
+//! | `mesh` | what it is drawn of: skin, parts, the bodies they hang on |
 //! | `reference` | the head that is built in |
 //! | `muscle` | fibres: linear and sphincter (HABER 5.1) |
 //! | `tissue` | the springs of the skin (HEADSHOP 4.2) |
@@ -31,6 +32,7 @@ mod file;
 mod head;
 mod key_frame;
 mod measure;
+mod mesh;
 mod muscle;
 mod quality;
 mod reference;
@@ -43,12 +45,10 @@ pub use articulation::{Articulation, Tongue};
 pub use calibration::{Calibration, CalibrationError};
 pub use control::{Control, Controls, Muscle};
 pub use file::HeadError;
-pub use head::{
-    Body, ColourMap, Eye, Feature, Head, LIP_LEVELS, Landmark, Layer, Lid, Lips, Material, Mesh,
-    Part, Placement, Skin, SurfacePoint, lip_level, normals,
-};
+pub use head::{ColourMap, Eye, Feature, Head, Landmark, Layer, Placement, SurfacePoint};
 pub use key_frame::{KeyFrame, TICK_RATE};
 pub use measure::{Measures, measure};
+pub use mesh::{Body, LIP_LEVELS, Lid, Lips, Material, Mesh, Part, Skin, lip_level, normals};
 pub use muscle::{Axis, Contraction, Fibre, GridPoint, MuscleGrid, Space, rebuild};
 pub use quality::{EdgeLengths, Quality, edge_lengths};
 pub use simulation::{STEP_TICKS, Simulation};

@@ -3,8 +3,8 @@
 use glam::Vec3;
 
 use crate::contact::upper_edge;
-use crate::head::LIP_LEVELS;
-use crate::head::lip_level::{BORDER, CONTACT, CREST, INNER};
+use crate::mesh::LIP_LEVELS;
+use crate::mesh::lip_level::{BORDER, CONTACT, CREST, INNER};
 use crate::{Control, Head, KeyFrame};
 
 /// What a mouth does, measured on the skin as it is drawn: on the limit of its subdivision.

@@ -8,9 +8,9 @@
 
 use glam::Vec3;
 
-use crate::head::LIP_LEVELS;
-use crate::head::lip_level::CONTACT;
-use crate::head::ramp;
+use crate::mesh::LIP_LEVELS;
+use crate::mesh::lip_level::CONTACT;
+use crate::mesh::ramp;
 use crate::muscle::Contraction;
 use crate::{Head, Muscle};
 

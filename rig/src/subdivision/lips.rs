@@ -7,7 +7,7 @@ use glam::Vec3;
 
 use super::{Detail, Stencils, Subdivision, SubdivisionError, Topology, limit_of, limit_stencils};
 use crate::Head;
-use crate::head::LIP_LEVELS;
+use crate::mesh::LIP_LEVELS;
 
 /// Weights for the lips' columns, worked out when first asked for.
 #[derive(Clone, Debug, Default)]

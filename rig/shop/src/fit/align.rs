@@ -3,8 +3,9 @@
 //! Closed form by unit quaternions (Horn 1987). It also tells when a mirror image would fit better than any turn, which
 //! is what left and right landmarks look like when they were swapped.
 
-use faer::{Mat, Side};
-use glam::{DMat3, DQuat, DVec3, Mat4, Quat, Vec3};
+use glam::{DMat3, DVec3, Mat4, Quat, Vec3};
+
+use crate::mesh::similarity::horn;
 
 /// How much better than the best turn a mirror image must explain the points to be blamed.
 const MIRROR_MARGIN: f64 = 1.02;
@@ -35,37 +36,14 @@ impl Similarity {
         let (mut cross, mut spread) = (DMat3::ZERO, [0.0; 2]);
         for (p, q) in from.iter().zip(to) {
             let (p, q) = (p.as_dvec3() - a, q.as_dvec3() - b);
-            cross += DMat3::from_cols(q * p.x, q * p.y, q * p.z);
+            cross += DMat3::from_cols(p * q.x, p * q.y, p * q.z);
             spread[0] += p.length_squared();
             spread[1] += q.length_squared();
         }
         if !(spread[0] > 0.0 && spread[1] > 0.0 && spread[0].is_finite() && spread[1].is_finite()) {
             return None;
         }
-        // s(i, j): sum of source coordinate i times target coordinate j.
-        let s = |i: usize, j: usize| cross.col(i)[j];
-        let horn = [
-            [
-                s(0, 0) + s(1, 1) + s(2, 2),
-                s(1, 2) - s(2, 1),
-                s(2, 0) - s(0, 2),
-                s(0, 1) - s(1, 0),
-            ],
-            [
-                0.0,
-                s(0, 0) - s(1, 1) - s(2, 2),
-                s(0, 1) + s(1, 0),
-                s(2, 0) + s(0, 2),
-            ],
-            [0.0, 0.0, s(1, 1) - s(0, 0) - s(2, 2), s(1, 2) + s(2, 1)],
-            [0.0, 0.0, 0.0, s(2, 2) - s(0, 0) - s(1, 1)],
-        ];
-        let matrix = Mat::from_fn(4, 4, |i, j| horn[i.min(j)][i.max(j)]);
-        let eigen = matrix.self_adjoint_eigen(Side::Lower).ok()?;
-        let (values, vectors) = (eigen.S(), eigen.U());
-        let best = |row: usize| vectors[(row, 3)];
-        let rotation = DQuat::from_xyzw(best(1), best(2), best(3), best(0)).normalize();
-        let (turn, mirror) = (values[3], -values[0]);
+        let (rotation, turn, mirror) = horn(cross);
         let scale = turn / spread[0];
         if !(scale > 0.0 && scale.is_finite() && rotation.is_finite()) {
             return None;

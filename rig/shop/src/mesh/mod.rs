@@ -17,7 +17,7 @@ mod polygon;
 mod prepare;
 mod read;
 mod scan;
-mod similarity;
+pub(crate) mod similarity;
 mod stl;
 mod text;
 mod tidy;

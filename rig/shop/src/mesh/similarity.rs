@@ -22,7 +22,7 @@ impl Similarity {
             cross += DMat3::from_cols(a * b.x, a * b.y, a * b.z);
             spread += a.length_squared();
         }
-        let rotation = rotation_of(cross);
+        let (rotation, ..) = horn(cross);
         // Least squares for the scale once the rotation stands.
         let turned: f64 = from
             .iter()
@@ -56,9 +56,9 @@ pub(crate) fn mean(points: &[DVec3]) -> DVec3 {
     points.iter().sum::<DVec3>() / points.len().max(1) as f64
 }
 
-/// The rotation that makes the most of `sum of a b^T`: the eigenvector of Horn's 4 x 4 matrix that
-/// belongs to its largest eigenvalue.
-fn rotation_of(s: DMat3) -> DQuat {
+/// The rotation that makes the most of `sum of a b^T` (its columns: sums of a times b's coordinates), with what it makes of it
+/// and what the best mirror image would: the extreme eigenvalues of Horn's 4 x 4 matrix and the eigenvector of the largest.
+pub(crate) fn horn(s: DMat3) -> (DQuat, f64, f64) {
     // s.col(j)[i] = sum of a_i b_j.
     let s = |i: usize, j: usize| s.col(j)[i];
     let (x, y, z) = (0, 1, 2);
@@ -75,8 +75,10 @@ fn rotation_of(s: DMat3) -> DQuat {
     let best = (0..4)
         .max_by(|&i, &j| values[i].total_cmp(&values[j]))
         .unwrap_or(0);
+    let least = values.into_iter().fold(f64::INFINITY, f64::min);
     let [w, x, y, z] = vectors.map(|row| row[best]);
-    DQuat::from_xyzw(x, y, z, w).normalize()
+    let rotation = DQuat::from_xyzw(x, y, z, w).normalize();
+    (rotation, values[best], -least)
 }
 
 /// Eigenvalues of a symmetric matrix, and its eigenvectors as columns, by Jacobi's rotations.
