@@ -39,7 +39,7 @@ check: ## formatting, lints, documentation, licences
 	fi
 
 test: setup-test check build ## everything that CI runs
-	$(CARGO) test --release --locked --workspace
+	NODE_PATH=$(CURDIR)/target/node/node_modules $(CARGO) test --release --locked --workspace
 	.ci/live.sh
 
 bench: build ## the speed of each stage on this machine
