@@ -12,8 +12,6 @@ use crate::mesh::lip_level::CREST;
 use crate::tissue::Tissue;
 use crate::{Eye, Head, Placement};
 
-/// Levels of a lip's column that can touch the other lip.
-const TOUCHING: std::ops::RangeInclusive<usize> = CREST..=LIP_LEVELS - 1;
 /// Passes over all columns, and the share of an overlap that one removes.
 const PASSES: usize = 2;
 const PASS_SHARE: f32 = 0.5;
@@ -27,13 +25,48 @@ const EYE_CLEARANCE_MM: f32 = 0.05;
 #[derive(Clone, Debug)]
 pub(crate) struct Contact {
     /// Pairs of columns: upper and lower lip.
-    columns: Vec<([u32; LIP_LEVELS], [u32; LIP_LEVELS])>,
+    columns: Vec<[Column; 2]>,
     /// Vertices near each eye: left, right.
     lids: [Vec<u32>; 2],
     eyes: [Eye; 2],
     bite: Placement,
     /// Per vertex that moves: from it to where it is drawn at rest.
     drawn: Vec<Vec3A>,
+}
+
+/// What of a lip's column can touch, from the crest inwards: each vertex once, though levels may share it.
+#[derive(Clone, Copy, Debug)]
+struct Column {
+    vertices: [u32; LIP_LEVELS],
+    count: usize,
+}
+
+impl Column {
+    /// Of the vertices that move; none where one does not.
+    fn new(levels: &[u32; LIP_LEVELS], tissue: &Tissue) -> Option<Self> {
+        let (mut vertices, mut count) = ([0; LIP_LEVELS], 0);
+        for &vertex in &levels[CREST..] {
+            let moving = tissue.moving(vertex)?;
+            if count == 0 || vertices[count - 1] != moving {
+                vertices[count] = moving;
+                count += 1;
+            }
+        }
+        Some(Self { vertices, count })
+    }
+
+    fn get(&self) -> &[u32] {
+        &self.vertices[..self.count]
+    }
+}
+
+/// A column's heights, depths and vertical speeds where it is drawn: what lips that press change and look at.
+#[derive(Clone, Copy)]
+struct Chain {
+    y: [f32; LIP_LEVELS],
+    z: [f32; LIP_LEVELS],
+    speed: [f32; LIP_LEVELS],
+    count: usize,
 }
 
 /// The skin's state that contact corrects.
@@ -45,13 +78,6 @@ pub(crate) struct Bodies<'a> {
 impl Contact {
     /// The contacts among the vertices of `head` that move.
     pub(crate) fn new(head: &Head, tissue: &Tissue) -> Self {
-        let column = |skin: &[u32; LIP_LEVELS]| {
-            let mut moving = [0; LIP_LEVELS];
-            for (number, &vertex) in moving.iter_mut().zip(skin) {
-                *number = tissue.moving(vertex)?;
-            }
-            Some(moving)
-        };
         let columns = head
             .lips
             .upper
@@ -59,7 +85,9 @@ impl Contact {
             .zip(&head.lips.lower)
             .skip(1)
             .take(head.lips.upper.len().saturating_sub(2))
-            .filter_map(|(upper, lower)| Some((column(upper)?, column(lower)?)))
+            .filter_map(|(upper, lower)| {
+                Some([Column::new(upper, tissue)?, Column::new(lower, tissue)?])
+            })
             .collect();
         let mut lids = [Vec::new(), Vec::new()];
         for lid in &head.lids {
@@ -91,24 +119,61 @@ impl Contact {
 
     fn lips(&self, skin: &mut Bodies<'_>) {
         for pass in 0..PASSES {
-            for (upper, lower) in &self.columns {
+            for [upper, lower] in &self.columns {
+                let (mut high, mut low) = (self.chain(skin, upper), self.chain(skin, lower));
+                let least = high.y[..high.count]
+                    .iter()
+                    .copied()
+                    .fold(f32::MAX, f32::min);
+                let most = low.y[..low.count].iter().copied().fold(f32::MIN, f32::max);
+                if least > most {
+                    continue;
+                }
                 // Alternate who is tested against whom, so that neither lip wins.
+                let mut touched = false;
                 for turn in 0..2 {
-                    if (turn + pass) % 2 == 0 {
-                        self.press(skin, lower, upper, 1.0);
+                    touched |= if (turn + pass) % 2 == 0 {
+                        press(&mut low, &mut high, 1.0)
                     } else {
-                        self.press(skin, upper, lower, -1.0);
-                    }
+                        press(&mut high, &mut low, -1.0)
+                    };
+                }
+                if touched {
+                    self.put(skin, upper, &high);
+                    self.put(skin, lower, &low);
                 }
             }
+        }
+    }
+
+    fn chain(&self, skin: &Bodies<'_>, column: &Column) -> Chain {
+        let mut chain = Chain {
+            y: [0.0; LIP_LEVELS],
+            z: [0.0; LIP_LEVELS],
+            speed: [0.0; LIP_LEVELS],
+            count: column.count,
+        };
+        for (i, &v) in column.get().iter().enumerate() {
+            let v = v as usize;
+            let place = skin.position[v] + self.drawn[v];
+            (chain.y[i], chain.z[i], chain.speed[i]) = (place.y, place.z, skin.velocity[v].y);
+        }
+        chain
+    }
+
+    fn put(&self, skin: &mut Bodies<'_>, column: &Column, chain: &Chain) {
+        for (i, &v) in column.get().iter().enumerate() {
+            let v = v as usize;
+            skin.position[v].y = chain.y[i] - self.drawn[v].y;
+            skin.velocity[v].y = chain.speed[i];
         }
     }
 
     /// Keeps the inner side of the lips in front of both rows of teeth.
     fn teeth(&self, skin: &mut Bodies<'_>, mandible: &Affine3A) {
         let unjawed = mandible.inverse();
-        for (upper, lower) in &self.columns {
-            for &i in upper[CREST + 1..].iter().chain(&lower[CREST + 1..]) {
+        for [upper, lower] in &self.columns {
+            for &i in upper.get()[1..].iter().chain(&lower.get()[1..]) {
                 let i = i as usize;
                 let p = skin.position[i] + self.drawn[i];
                 // The arches are described where they stand on the reference head.
@@ -142,45 +207,40 @@ impl Contact {
             }
         }
     }
+}
 
-    /// Pushes each touching vertex of `a` out of the chain `b`; `sense` is 1 where `a` lies below `b`.
-    fn press(
-        &self,
-        skin: &mut Bodies<'_>,
-        a: &[u32; LIP_LEVELS],
-        b: &[u32; LIP_LEVELS],
-        sense: f32,
-    ) {
-        for &i in &a[TOUCHING] {
-            let i = i as usize;
-            for w in b[TOUCHING].windows(2) {
-                let (j, k) = (w[0] as usize, w[1] as usize);
-                let [p, q, r] = [i, j, k].map(|v| skin.position[v] + self.drawn[v]);
-                let (high, low) = (q.z.max(r.z), q.z.min(r.z));
-                if p.z > high || p.z < low || high - low < 1e-3 {
-                    continue;
-                }
-                let share = ((p.z - q.z) / (r.z - q.z)).clamp(0.0, 1.0);
-                let overlap = sense * (p.y - (q.y + (r.y - q.y) * share));
-                if overlap <= SLOP_MM || overlap > 12.0 {
-                    continue;
-                }
-                let shift = sense * (overlap - SLOP_MM) * PASS_SHARE;
-                skin.position[i].y -= shift;
-                skin.position[j].y += shift * (1.0 - share);
-                skin.position[k].y += shift * share;
-                // No rebound: both sides take the mean of their vertical speeds if they approach.
-                let other = skin.velocity[j].y * (1.0 - share) + skin.velocity[k].y * share;
-                let approach = sense * (skin.velocity[i].y - other);
-                if approach > 0.0 {
-                    let half = 0.5 * sense * approach;
-                    skin.velocity[i].y -= half;
-                    skin.velocity[j].y += half * (1.0 - share);
-                    skin.velocity[k].y += half * share;
-                }
+/// Pushes each vertex of `a` out of the chain `b`; `sense` is 1 where `a` lies below `b`. Says whether any was inside.
+fn press(a: &mut Chain, b: &mut Chain, sense: f32) -> bool {
+    let mut touched = false;
+    for i in 0..a.count {
+        for j in 0..b.count.saturating_sub(1) {
+            let k = j + 1;
+            let (high, low) = (b.z[j].max(b.z[k]), b.z[j].min(b.z[k]));
+            if a.z[i] > high || a.z[i] < low || high - low < 1e-3 {
+                continue;
+            }
+            let share = ((a.z[i] - b.z[j]) / (b.z[k] - b.z[j])).clamp(0.0, 1.0);
+            let overlap = sense * (a.y[i] - (b.y[j] + (b.y[k] - b.y[j]) * share));
+            if overlap <= SLOP_MM || overlap > 12.0 {
+                continue;
+            }
+            touched = true;
+            let shift = sense * (overlap - SLOP_MM) * PASS_SHARE;
+            a.y[i] -= shift;
+            b.y[j] += shift * (1.0 - share);
+            b.y[k] += shift * share;
+            // No rebound: both sides take the mean of their vertical speeds if they approach.
+            let other = b.speed[j] * (1.0 - share) + b.speed[k] * share;
+            let approach = sense * (a.speed[i] - other);
+            if approach > 0.0 {
+                let half = 0.5 * sense * approach;
+                a.speed[i] -= half;
+                b.speed[j] += half * (1.0 - share);
+                b.speed[k] += half * share;
             }
         }
     }
+    touched
 }
 
 /// Heights of the biting edges and how far forward the incisors' fronts stand, mm at rest.
