@@ -80,6 +80,10 @@ fn text(bytes: &[u8], first: bool) -> Result<&str, Fault> {
     let line = line.strip_suffix('\r').unwrap_or(line);
     let bare = line.strip_prefix('\u{feff}').filter(|_| first);
     let line = bare.unwrap_or(line);
+    // Blank is blank, whatever it is made of: line ends that were converted twice leave carriage returns.
+    if line.trim_ascii().is_empty() {
+        return Ok("");
+    }
     if line.chars().any(|c| c.is_control() && c != '\t') {
         return Err(Fault::NotText);
     }

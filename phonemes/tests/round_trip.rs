@@ -220,3 +220,16 @@ fn a_bad_line_in_a_stream_leaves_the_others_as_they_are() {
     parser.push(b"0 100 h#\n", |one| ends.push(one.map(|s| s.end)));
     assert_eq!(ends, [Ok(300)]);
 }
+
+/// Line ends that were converted twice: a file of nothing else is empty, not unreadable.
+#[test]
+fn blank_lines_of_carriage_returns_are_blank() {
+    for bytes in [&b"\r\r\n"[..], b"\r \n", b" \r\t\r\n\n"] {
+        assert!(stream(&[bytes], SampleRate::TIMIT).is_empty());
+    }
+    let with_blanks = stream(
+        &[b"\r\r\n0 100 h#\r\n\r\r\n100 200 aa\n"],
+        SampleRate::TIMIT,
+    );
+    assert_eq!(with_blanks.iter().filter(|one| one.is_ok()).count(), 2);
+}
