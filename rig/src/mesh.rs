@@ -3,7 +3,7 @@
 use glam::{Vec2, Vec3};
 use serde::{Deserialize, Serialize};
 
-/// A frame of reference that parts hang on; poses come from [`Head::bodies`].
+/// A frame of reference that parts hang on; poses come from [`Head::bodies`](crate::Head::bodies).
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 #[repr(usize)]
