@@ -5,6 +5,8 @@ use glam::{Vec2, Vec3, vec2};
 use mouthpiece_rig::Mesh;
 use mouthpiece_rig::normals;
 
+pub(super) use crate::noise::ramp;
+
 /// A grid of `columns` x `rows` cells over (u, v) in 0..1, joined at u = 0 and 1 where `closed`.
 /// Seen from the side where u grows to the right and v downwards, triangles are counter-clockwise.
 pub(super) fn grid(
@@ -86,10 +88,4 @@ pub(super) fn mirrored(mesh: &Mesh) -> Mesh {
         occlusion: mesh.occlusion.clone(),
         triangles: mesh.triangles.iter().map(|&[a, b, c]| [a, c, b]).collect(),
     }
-}
-
-/// Smooth step from 0 at `from` to 1 at `to`, either way round.
-pub(super) fn ramp(from: f32, to: f32, value: f32) -> f32 {
-    let share = ((value - from) / (to - from)).clamp(0.0, 1.0);
-    share * share * (3.0 - 2.0 * share)
 }
