@@ -4,8 +4,11 @@
 //! so the choice is by anatomy (Terminologia Anatomica): the two halves of the orbicularis oris and
 //! the ten muscles that insert into it or into the chin. The others complete HEADSHOP 3's number, 24
 //! (the orbicularis oculi is one muscle in two parts, so that there are 25): those that move brows,
-//! lids and nose, the sheet of the neck and the two of the jaw that show under the skin. Paired
-//! muscles act together.
+//! lids and nose, the sheet of the neck and the two of the jaw that show under the skin.
+//!
+//! A paired muscle has one control for both bellies and one, its *side*, for how they differ: the left
+//! one contracts by their sum, the right one by their difference. So that speech, which is even on
+//! both sides, leaves the sides alone, and everything linear (filters, mixes) acts on both alike.
 
 use serde::{Deserialize, Serialize};
 
@@ -183,6 +186,52 @@ controls! {
     HeadPitch = "head_pitch_rad" in -0.4 ..= 0.4;
     /// Head tilted towards the subject's left shoulder, radians.
     HeadRoll = "head_roll_rad" in -0.3 ..= 0.3;
+    /// How much more the left belly contracts than both on average.
+    LevatorLabiiSuperiorisSide = "levator_labii_superioris_side" in -1.0 ..= 1.0;
+    /// How much more the left belly contracts than both on average.
+    LevatorLabiiSuperiorisAlaequeNasiSide = "levator_labii_superioris_alaeque_nasi_side" in -1.0 ..= 1.0;
+    /// How much more the left belly contracts than both on average.
+    LevatorAnguliOrisSide = "levator_anguli_oris_side" in -1.0 ..= 1.0;
+    /// How much more the left belly contracts than both on average.
+    ZygomaticusMajorSide = "zygomaticus_major_side" in -1.0 ..= 1.0;
+    /// How much more the left belly contracts than both on average.
+    ZygomaticusMinorSide = "zygomaticus_minor_side" in -1.0 ..= 1.0;
+    /// How much more the left belly contracts than both on average.
+    RisoriusSide = "risorius_side" in -1.0 ..= 1.0;
+    /// How much more the left belly contracts than both on average.
+    BuccinatorSide = "buccinator_side" in -1.0 ..= 1.0;
+    /// How much more the left belly contracts than both on average.
+    DepressorAnguliOrisSide = "depressor_anguli_oris_side" in -1.0 ..= 1.0;
+    /// How much more the left belly contracts than both on average.
+    DepressorLabiiInferiorisSide = "depressor_labii_inferioris_side" in -1.0 ..= 1.0;
+    /// How much more the left belly contracts than both on average.
+    MentalisSide = "mentalis_side" in -1.0 ..= 1.0;
+    /// How much more the left belly contracts than both on average.
+    FrontalisInnerSide = "frontalis_inner_side" in -1.0 ..= 1.0;
+    /// How much more the left belly contracts than both on average.
+    FrontalisOuterSide = "frontalis_outer_side" in -1.0 ..= 1.0;
+    /// How much more the left belly contracts than both on average.
+    CorrugatorSuperciliiSide = "corrugator_supercilii_side" in -1.0 ..= 1.0;
+    /// How much more the left belly contracts than both on average.
+    ProcerusSide = "procerus_side" in -1.0 ..= 1.0;
+    /// How much more the left belly contracts than both on average.
+    DepressorSuperciliiSide = "depressor_supercilii_side" in -1.0 ..= 1.0;
+    /// How much more the left belly contracts than both on average.
+    OrbicularisOculiOrbitalSide = "orbicularis_oculi_orbital_side" in -1.0 ..= 1.0;
+    /// How much more the left belly contracts than both on average.
+    OrbicularisOculiPalpebralSide = "orbicularis_oculi_palpebral_side" in -1.0 ..= 1.0;
+    /// How much more the left belly contracts than both on average.
+    NasalisSide = "nasalis_side" in -1.0 ..= 1.0;
+    /// How much more the left belly contracts than both on average.
+    DilatorNarisSide = "dilator_naris_side" in -1.0 ..= 1.0;
+    /// How much more the left belly contracts than both on average.
+    DepressorSeptiNasiSide = "depressor_septi_nasi_side" in -1.0 ..= 1.0;
+    /// How much more the left belly contracts than both on average.
+    PlatysmaSide = "platysma_side" in -1.0 ..= 1.0;
+    /// How much more the left belly contracts than both on average.
+    MasseterSide = "masseter_side" in -1.0 ..= 1.0;
+    /// How much more the left belly contracts than both on average.
+    TemporalisSide = "temporalis_side" in -1.0 ..= 1.0;
 }
 
 impl Control {
@@ -190,6 +239,16 @@ impl Control {
     #[must_use]
     pub const fn contraction(muscle: Muscle) -> Self {
         Self::ALL[muscle as usize]
+    }
+
+    /// How the two bellies of `muscle` differ; none for the halves of the orbicularis oris, which
+    /// each cross the middle.
+    #[must_use]
+    pub const fn side(muscle: Muscle) -> Option<Self> {
+        match (muscle as usize).checked_sub(Muscle::LevatorLabiiSuperioris as usize) {
+            Some(pair) => Some(Self::ALL[Self::LevatorLabiiSuperiorisSide as usize + pair]),
+            None => None,
+        }
     }
 
     /// The control of that name.
@@ -223,6 +282,18 @@ impl std::ops::IndexMut<Control> for Controls {
 }
 
 impl Controls {
+    /// The contraction of one belly of `muscle`, the subject's left or right one, 0 to 1.
+    #[must_use]
+    pub fn contraction(&self, muscle: Muscle, left: bool) -> f32 {
+        let both = self[Control::contraction(muscle)];
+        match Control::side(muscle).map(|side| self[side]) {
+            Some(side) if side != 0.0 => {
+                (if left { both + side } else { both - side }).clamp(0.0, 1.0)
+            }
+            _ => both,
+        }
+    }
+
     /// Every value within its range; what is not a number becomes 0.
     #[must_use]
     pub fn clamped(mut self) -> Self {
@@ -244,5 +315,42 @@ impl Controls {
         Self(std::array::from_fn(|i| {
             self.0[i] + (other.0[i] - self.0[i]) * share
         }))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Numbers tie muscles, contractions and sides together: their names must agree.
+    #[test]
+    fn each_muscle_has_its_contraction_and_its_side() {
+        for muscle in Muscle::ALL {
+            let contraction = Control::contraction(muscle);
+            let Some(side) = Control::side(muscle) else {
+                assert!(contraction.name().starts_with("orbicularis_oris"));
+                continue;
+            };
+            assert_eq!(side.name(), format!("{}_side", contraction.name()));
+        }
+        let sides = Muscle::ALL.into_iter().filter_map(Control::side).count();
+        assert_eq!(sides, Muscle::COUNT - 2);
+        assert_eq!(Control::ALL.len(), Control::HeadRoll as usize + 1 + sides);
+    }
+
+    #[test]
+    fn a_side_sets_the_bellies_apart_and_none_leaves_them_even() {
+        let muscle = Muscle::ZygomaticusMajor;
+        let mut controls = Controls::default();
+        controls[Control::ZygomaticusMajor] = 0.4;
+        for left in [true, false] {
+            assert_eq!(controls.contraction(muscle, left), 0.4);
+        }
+        controls[Control::ZygomaticusMajorSide] = 0.4;
+        assert_eq!(controls.contraction(muscle, true), 0.8);
+        assert_eq!(controls.contraction(muscle, false), 0.0);
+        controls[Control::ZygomaticusMajorSide] = -0.7;
+        assert_eq!(controls.contraction(muscle, true), 0.0);
+        assert_eq!(controls.contraction(muscle, false), 1.0);
     }
 }

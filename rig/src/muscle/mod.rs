@@ -33,6 +33,9 @@ const fn shortening(muscle: Muscle) -> f32 {
     }
 }
 
+/// A fibre nearer to the middle of the face than this belongs to both sides.
+const MIDDLE_MM: f32 = 2.0;
+
 /// How a fibre contracts.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Contraction {
@@ -75,7 +78,7 @@ impl Fibre {
         for ((q, p), share) in out.iter_mut().zip(&self.points).zip(&self.mandible) {
             *q = carried(*p, *share, mandible);
         }
-        let contraction = controls[Control::contraction(self.muscle)];
+        let contraction = self.told(controls);
         match self.contraction {
             Contraction::Linear => {
                 self.straighten(out);
@@ -113,13 +116,24 @@ impl Fibre {
     /// hangs on the mandible, no motion of the jaw.
     pub(crate) fn rests(&self, controls: &Controls, jaw_still: bool, still: f32) -> bool {
         let protrudes = |control| controls[control].abs() >= still;
-        let active = controls[Control::contraction(self.muscle)].abs() >= still
+        let active = self.told(controls).abs() >= still
             || match self.muscle {
                 Muscle::OrbicularisOrisSuperior => protrudes(Control::ProtrusionSuperior),
                 Muscle::OrbicularisOrisInferior => protrudes(Control::ProtrusionInferior),
                 _ => false,
             };
         !active && (jaw_still || self.mandible.iter().all(|share| *share == 0.0))
+    }
+
+    /// How much `controls` contract it: as their belly of the muscle on its side of the face.
+    fn told(&self, controls: &Controls) -> f32 {
+        let uneven = Control::side(self.muscle).is_some_and(|side| controls[side] != 0.0);
+        let middle = self.points.iter().map(|p| p.x).sum::<f32>() / self.points.len().max(1) as f32;
+        if uneven && middle.abs() >= MIDDLE_MM {
+            controls.contraction(self.muscle, middle > 0.0)
+        } else {
+            controls[Control::contraction(self.muscle)]
+        }
     }
 
     /// A curved fibre under tension approaches the straight line between its ends (HABER 5.1).
