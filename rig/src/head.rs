@@ -5,7 +5,7 @@ use serde::{Deserialize, Serialize};
 
 use crate::mesh::{Body, Lid, Lips, Part, Skin};
 use crate::muscle::{Fibre, MuscleGrid};
-use crate::{Calibration, Control, Controls, KeyFrame, LipStencils};
+use crate::{Calibration, Control, Controls, KeyFrame, LipStencils, TissueRecord};
 
 /// A place on a triangle of a mesh.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
@@ -142,6 +142,8 @@ pub struct Head {
     pub condyle_axis: Vec3,
     /// What the head turns about.
     pub neck_pivot: Vec3,
+    /// Which tissue moves the skin, and its mass.
+    pub tissue: TissueRecord,
     /// How this head's mouth answers to its muscles.
     pub calibration: Calibration,
     /// Colour of the skin over its `uv`; none where nothing is known of it.

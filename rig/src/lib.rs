@@ -11,6 +11,7 @@
 //! | `mesh` | what it is drawn of: skin, parts, the bodies they hang on |
 //! | `reference` | the head that is built in |
 //! | `muscle` | fibres: linear and sphincter (HABER 5.1) |
+//! | `tissue_record` | which tissue a head has, and its mass |
 //! | `tissue` | the springs of the skin (HEADSHOP 4.2) |
 //! | `contact` | lips, teeth, lids and eyeballs stop each other |
 //! | `simulation` | steps all of it in time |
@@ -39,6 +40,7 @@ mod reference;
 mod simulation;
 mod subdivision;
 mod tissue;
+mod tissue_record;
 
 pub use anthropometry::{Measurement, measurements};
 pub use articulation::{Articulation, Tongue};
@@ -56,3 +58,4 @@ pub use subdivision::{
     Detail, LipStencils, Stencils, Subdivision, SubdivisionError, Topology, fit_control,
     limit_stencils,
 };
+pub use tissue_record::{TissueModel, TissueRecord};

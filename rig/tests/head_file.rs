@@ -14,7 +14,7 @@ use std::sync::OnceLock;
 
 use glam::Vec3;
 use like::{assert_alike, decorated, reference};
-use mouthpiece_rig::{Head, HeadError};
+use mouthpiece_rig::{Head, HeadError, TissueModel, TissueRecord};
 use proptest::prelude::*;
 
 /// Of positions that went through metres and another program's floats, mm.
@@ -201,6 +201,30 @@ fn what_is_broken_is_named_with_its_mend() {
         }
         assert!(!said.contains('\n') && said.len() < 400, "{said}");
     }
+}
+
+#[test]
+fn a_mass_that_cannot_be_is_refused() {
+    for mass in ["0.0", "-1.0", "1e-3", "1e9", "1e39"] {
+        let said = refused(&with_json(|json| {
+            let from = "\"vertex_mass_g\":0.125";
+            assert!(json.contains(from));
+            json.replace(from, &format!("\"vertex_mass_g\":{mass}"))
+        }));
+        assert!(said.contains("tissue.vertex_mass_g"), "{mass}: {said}");
+    }
+}
+
+#[test]
+fn a_head_of_before_there_was_a_choice_of_tissue_is_read() {
+    let bytes = with_json(|json| {
+        let from = json.find(",\"tissue\":").unwrap();
+        let to = from + json[from..].find('}').unwrap() + 1;
+        format!("{}{}", &json[..from], &json[to..])
+    });
+    let head = Head::read(&bytes).unwrap();
+    assert_eq!(head.tissue, TissueRecord::default());
+    assert_eq!(head.tissue.model, TissueModel::Springs);
 }
 
 #[test]

@@ -6,7 +6,7 @@ use glam::Vec3;
 
 use super::parts::{BONES, REQUIRED};
 use super::{ANEW, HeadError, KEEP};
-use crate::{Head, Layer, MuscleGrid, Part, Skin, SurfacePoint};
+use crate::{Head, Layer, MuscleGrid, Part, Skin, SurfacePoint, TissueRecord};
 
 /// Nothing of a head lies further from its middle, mm.
 const FAR_MM: f32 = 2000.0;
@@ -250,5 +250,21 @@ fn placement(head: &Head) -> Checked {
     ] {
         that(near(at), || name.into(), "it is metres away")?;
     }
-    Ok(())
+    tissue(&head.tissue)
+}
+
+fn tissue(tissue: &TissueRecord) -> Checked {
+    let mass = tissue.vertex_mass_g;
+    let (min, max) = (TissueRecord::MASS_MIN_G, TissueRecord::MASS_MAX_G);
+    let fault = if !(mass > 0.0 && mass.is_finite()) {
+        "there is no such mass".to_owned()
+    } else if (min..=max).contains(&mass) {
+        return Ok(());
+    } else if mass < min {
+        format!("{mass} g is too light for the step, which needs {min} g")
+    } else {
+        format!("{mass} g is heavier than skin can be, {max} g")
+    };
+    let mend = "set it to 0.07, or leave it out";
+    Err(HeadError::element("tissue.vertex_mass_g", fault, mend))
 }

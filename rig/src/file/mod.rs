@@ -29,8 +29,9 @@
 //! The `head` node's `extras.mouthpiece` is JSON, lengths in mm, vertices by their `_SIM`:
 //! `schema` (the version, 1), `skin` (`vertices`, `creases`), `parts` (each with `name`, `material`,
 //! `bodies`, `vertices`), `features`, `landmarks`, `lips`, `lids`, `muscles`, `eyes` (left, right),
-//! `bite`, `condyle_axis`, `neck_pivot`, `calibration`. Their fields are those of the types of the
-//! same names: `Landmark`, `Lips`, `Lid`, `MuscleGrid`, `Eye`, `Placement`, `Calibration`. Muscle
+//! `bite`, `condyle_axis`, `neck_pivot`, `tissue`, `calibration`. Their fields are those of the types of the
+//! same names: `Landmark`, `Lips`, `Lid`, `MuscleGrid`, `Eye`, `Placement`, `TissueRecord`,
+//! `Calibration`. Muscle
 //! fibres are not stored: they are rebuilt from `muscles` and the space over the bones. A change
 //! that older programs would misread raises `schema`.
 //!

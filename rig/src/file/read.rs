@@ -57,6 +57,7 @@ pub(super) fn head(document: &Document, binary: &[u8]) -> Result<Head, HeadError
         bite: extras.bite,
         condyle_axis: extras.condyle_axis,
         neck_pivot: extras.neck_pivot,
+        tissue: extras.tissue,
         calibration: extras.calibration.checked()?,
         colour: None,
     };

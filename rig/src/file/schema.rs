@@ -8,6 +8,7 @@ use super::HeadError;
 use super::document::Document;
 use crate::{
     Body, Calibration, Eye, Feature, Head, Landmark, Lid, Lips, Material, MuscleGrid, Placement,
+    TissueRecord,
 };
 
 /// The version that is written, and the only one that is read.
@@ -37,6 +38,9 @@ pub(super) struct Extras {
     pub bite: Placement,
     pub condyle_axis: Vec3,
     pub neck_pivot: Vec3,
+    /// Files of before there was a choice have none.
+    #[serde(default)]
+    pub tissue: TissueRecord,
     pub calibration: Calibration,
 }
 
@@ -88,6 +92,7 @@ impl Extras {
             bite: head.bite,
             condyle_axis: head.condyle_axis,
             neck_pivot: head.neck_pivot,
+            tissue: head.tissue,
             calibration: head.calibration.clone(),
         }
     }

@@ -8,7 +8,8 @@ use std::sync::OnceLock;
 
 use glam::{Vec2, Vec3};
 use mouthpiece_rig::{
-    ColourMap, GridPoint, Head, Landmark, Layer, Muscle, MuscleGrid, SurfacePoint, rebuild,
+    ColourMap, GridPoint, Head, Landmark, Layer, Muscle, MuscleGrid, SurfacePoint, TissueModel,
+    TissueRecord, rebuild,
 };
 
 pub(crate) fn reference() -> &'static Head {
@@ -43,6 +44,10 @@ pub(crate) fn decorated() -> Head {
     head.muscles = vec![grid(&head, Muscle::Risorius), grid(&head, Muscle::Mentalis)];
     let bones = ["skull", "mandible"].map(|name| &head.part(name).unwrap().mesh);
     head.fibres = rebuild(&head.muscles, &head.skin.mesh.positions, bones);
+    head.tissue = TissueRecord {
+        model: TissueModel::Layered,
+        vertex_mass_g: 0.125,
+    };
     let (width, height) = (64, 32);
     head.colour = Some(ColourMap {
         width,
@@ -162,7 +167,7 @@ pub(crate) fn assert_alike(a: &Head, b: &Head, tolerance: f32) {
         (a.condyle_axis, a.neck_pivot),
         (b.condyle_axis, b.neck_pivot)
     );
-    assert_eq!(a.calibration, b.calibration);
+    assert_eq!((a.tissue, &a.calibration), (b.tissue, &b.calibration));
     assert_eq!(a.fibres.len(), b.fibres.len());
     for (one, two) in a.fibres.iter().zip(&b.fibres) {
         near("fibre", &one.points, &two.points, 0.01);

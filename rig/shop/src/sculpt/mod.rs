@@ -38,8 +38,8 @@ mod trunk;
 
 use glam::{Vec3, vec3};
 use mouthpiece_rig::{
-    Calibration, Eye, Head, LipStencils, Material, Placement, SubdivisionError, fit_control,
-    normals,
+    Calibration, Eye, Head, LipStencils, Material, Placement, SubdivisionError, TissueRecord,
+    fit_control, normals,
 };
 use thiserror::Error;
 
@@ -122,6 +122,7 @@ pub fn reference(calibration: Calibration) -> Result<Head, SculptError> {
         bite: Placement::default(),
         condyle_axis: CONDYLE_AXIS,
         neck_pivot: NECK_PIVOT,
+        tissue: TissueRecord::default(),
         calibration,
         lip_stencils: LipStencils::default(),
         colour: None,
