@@ -9,7 +9,7 @@ use glam::{Affine3A, Vec3, Vec3A, vec3};
 
 use crate::mesh::LIP_LEVELS;
 use crate::mesh::lip_level::CREST;
-use crate::tissue::Tissue;
+use crate::tissue::{Nodes, Numbering};
 use crate::{Eye, Head, Placement};
 
 /// Passes over all columns, and the share of an overlap that one removes.
@@ -43,10 +43,10 @@ struct Column {
 
 impl Column {
     /// Of the vertices that move; none where one does not.
-    fn new(levels: &[u32; LIP_LEVELS], tissue: &Tissue) -> Option<Self> {
+    fn new(levels: &[u32; LIP_LEVELS], numbering: &Numbering) -> Option<Self> {
         let (mut vertices, mut count) = ([0; LIP_LEVELS], 0);
         for &vertex in &levels[CREST..] {
-            let moving = tissue.moving(vertex)?;
+            let moving = numbering.moving(vertex)?;
             if count == 0 || vertices[count - 1] != moving {
                 vertices[count] = moving;
                 count += 1;
@@ -69,15 +69,9 @@ struct Chain {
     count: usize,
 }
 
-/// The skin's state that contact corrects.
-pub(crate) struct Bodies<'a> {
-    pub position: &'a mut [Vec3A],
-    pub velocity: &'a mut [Vec3A],
-}
-
 impl Contact {
     /// The contacts among the vertices of `head` that move.
-    pub(crate) fn new(head: &Head, tissue: &Tissue) -> Self {
+    pub(crate) fn new(head: &Head, numbering: &Numbering) -> Self {
         let columns = head
             .lips
             .upper
@@ -86,16 +80,19 @@ impl Contact {
             .skip(1)
             .take(head.lips.upper.len().saturating_sub(2))
             .filter_map(|(upper, lower)| {
-                Some([Column::new(upper, tissue)?, Column::new(lower, tissue)?])
+                Some([
+                    Column::new(upper, numbering)?,
+                    Column::new(lower, numbering)?,
+                ])
             })
             .collect();
         let mut lids = [Vec::new(), Vec::new()];
         for lid in &head.lids {
-            lids[usize::from(!lid.left)].extend(tissue.moving(lid.vertex));
+            lids[usize::from(!lid.left)].extend(numbering.moving(lid.vertex));
         }
         let rest = &head.skin.mesh.positions;
         let drawn = head.drawn_rest();
-        let drawn = tissue.vertices[..tissue.movable]
+        let drawn = numbering.vertices[..numbering.movable]
             .iter()
             .map(|&v| Vec3A::from(drawn[v as usize] - rest[v as usize]))
             .collect();
@@ -109,7 +106,7 @@ impl Contact {
     }
 
     /// Resolves everything; `lips` is false while calibrating, where targets past contact count.
-    pub(crate) fn resolve(&self, skin: &mut Bodies<'_>, mandible: &Affine3A, lips: bool) {
+    pub(crate) fn resolve(&self, skin: &mut Nodes, mandible: &Affine3A, lips: bool) {
         if lips {
             self.lips(skin);
         }
@@ -117,7 +114,7 @@ impl Contact {
         self.eyeballs(skin);
     }
 
-    fn lips(&self, skin: &mut Bodies<'_>) {
+    fn lips(&self, skin: &mut Nodes) {
         for pass in 0..PASSES {
             for [upper, lower] in &self.columns {
                 let (mut high, mut low) = (self.chain(skin, upper), self.chain(skin, lower));
@@ -146,7 +143,7 @@ impl Contact {
         }
     }
 
-    fn chain(&self, skin: &Bodies<'_>, column: &Column) -> Chain {
+    fn chain(&self, skin: &Nodes, column: &Column) -> Chain {
         let mut chain = Chain {
             y: [0.0; LIP_LEVELS],
             z: [0.0; LIP_LEVELS],
@@ -155,27 +152,27 @@ impl Contact {
         };
         for (i, &v) in column.get().iter().enumerate() {
             let v = v as usize;
-            let place = skin.position[v] + self.drawn[v];
-            (chain.y[i], chain.z[i], chain.speed[i]) = (place.y, place.z, skin.velocity[v].y);
+            let place = skin.place(v) + self.drawn[v];
+            (chain.y[i], chain.z[i], chain.speed[i]) = (place.y, place.z, skin.vy[v]);
         }
         chain
     }
 
-    fn put(&self, skin: &mut Bodies<'_>, column: &Column, chain: &Chain) {
+    fn put(&self, skin: &mut Nodes, column: &Column, chain: &Chain) {
         for (i, &v) in column.get().iter().enumerate() {
             let v = v as usize;
-            skin.position[v].y = chain.y[i] - self.drawn[v].y;
-            skin.velocity[v].y = chain.speed[i];
+            skin.y[v] = chain.y[i] - self.drawn[v].y;
+            skin.vy[v] = chain.speed[i];
         }
     }
 
     /// Keeps the inner side of the lips in front of both rows of teeth.
-    fn teeth(&self, skin: &mut Bodies<'_>, mandible: &Affine3A) {
+    fn teeth(&self, skin: &mut Nodes, mandible: &Affine3A) {
         let unjawed = mandible.inverse();
         for [upper, lower] in &self.columns {
             for &i in upper.get()[1..].iter().chain(&lower.get()[1..]) {
                 let i = i as usize;
-                let p = skin.position[i] + self.drawn[i];
+                let p = skin.place(i) + self.drawn[i];
                 // The arches are described where they stand on the reference head.
                 let q = self.bite.reference(p.into());
                 let up = in_front(q, UPPER_EDGE_Y, 14.0, UPPER_FRONT_Z);
@@ -183,26 +180,27 @@ impl Contact {
                 let low = in_front(q, LOWER_EDGE_Y - 14.0, 14.0, LOWER_FRONT_Z);
                 let push = up.max(low) * self.bite.scale.z;
                 if push > 0.0 {
-                    skin.position[i].z += push;
-                    skin.velocity[i].z = skin.velocity[i].z.max(0.0);
+                    skin.z[i] += push;
+                    skin.vz[i] = skin.vz[i].max(0.0);
                 }
             }
         }
     }
 
-    fn eyeballs(&self, skin: &mut Bodies<'_>) {
+    fn eyeballs(&self, skin: &mut Nodes) {
         for (list, eye) in self.lids.iter().zip(&self.eyes) {
             let centre = Vec3A::from(eye.centre);
             let least = eye.radius + EYE_CLEARANCE_MM;
             for &i in list {
                 let i = i as usize;
-                let out = skin.position[i] + self.drawn[i] - centre;
+                let out = skin.place(i) + self.drawn[i] - centre;
                 let distance = out.length();
                 if distance < least && distance > 1.0 {
                     let normal = out / distance;
-                    skin.position[i] = centre + normal * least - self.drawn[i];
-                    let inwards = skin.velocity[i].dot(normal).min(0.0);
-                    skin.velocity[i] -= normal * inwards;
+                    skin.set_place(i, centre + normal * least - self.drawn[i]);
+                    let velocity = skin.velocity(i);
+                    let inwards = velocity.dot(normal).min(0.0);
+                    skin.set_velocity(i, velocity - normal * inwards);
                 }
             }
         }

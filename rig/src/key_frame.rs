@@ -21,6 +21,9 @@ pub struct KeyFrame {
     pub skin: Vec<Vec3>,
     /// Velocities of the same, mm/s.
     pub velocity: Vec<Vec3>,
+    /// Places and velocities of what the tissue has below the skin, one after the other; empty for the default
+    /// model, which has nothing there.
+    pub inner: Vec<Vec3>,
     /// Where muscles, jaw, tongue, lids, gaze and head really are (they have inertia), as controls.
     pub state: Controls,
     /// How fast the same change, per second.
@@ -39,6 +42,7 @@ impl KeyFrame {
         self.state_rate = a.state_rate.lerp(&b.state_rate, share);
         blend(&mut self.skin, &a.skin, &b.skin, share);
         blend(&mut self.velocity, &a.velocity, &b.velocity, share);
+        blend(&mut self.inner, &a.inner, &b.inner, share);
     }
 
     /// Copies `other` into this frame's own buffers.
@@ -49,6 +53,7 @@ impl KeyFrame {
         self.state_rate = other.state_rate;
         self.skin.clone_from(&other.skin);
         self.velocity.clone_from(&other.velocity);
+        self.inner.clone_from(&other.inner);
     }
 }
 

@@ -5,57 +5,55 @@
 
 use std::sync::Arc;
 
-use glam::{Affine3A, Quat, Vec3, Vec3A};
+use glam::Vec3;
 
-use crate::contact::{Bodies, Contact};
+use crate::contact::Contact;
 use crate::key_frame::TICK_RATE;
-use crate::muscle::{Merge, carried, merges};
-use crate::tissue::{EDGE, Tissue};
+use crate::muscle::Muscles;
+use crate::tissue::{Drive, Numbering, Springs, Tissue};
 use crate::{Control, Controls, Head, KeyFrame};
 
 /// Length of a step in ticks: 480 steps a second.
 pub const STEP_TICKS: i64 = 100;
-const STEP_S: f32 = STEP_TICKS as f32 / TICK_RATE as f32;
-/// Damping per mass, 1/s: a little over critical for a vertex on its muscle.
-const DAMPING: f32 = 420.0;
-/// Share of its stiffness that a skin edge keeps when it is pressed together: skin goes slack rather
-/// than buckle.
-const SLACK: f32 = 0.12;
+/// The same in seconds.
+pub(crate) const STEP_S: f32 = STEP_TICKS as f32 / TICK_RATE as f32;
 /// How fast components follow their controls (critically damped), 1/s.
 const MUSCLE_RATE: f32 = 170.0;
 const JAW_RATE: f32 = 130.0;
 const HEAD_RATE: f32 = 40.0;
-/// A control nearer to 0 than this does nothing, and a fibre's point nearer to rest than so many mm.
-const STILL: f32 = 1e-6;
-const STILL_MM: f32 = 1e-5;
-/// The lids aim past each other by this factor, since the skin round them holds them back.
-const LID_OVERSHOOT: f32 = 1.22;
+
+/// The tissue's model that a head asks for.
+#[derive(Clone, Debug)]
+enum Model {
+    Springs(Box<Springs>),
+}
+
+impl Model {
+    fn tissue(&self) -> &dyn Tissue {
+        match self {
+            Self::Springs(springs) => springs.as_ref(),
+        }
+    }
+
+    fn tissue_mut(&mut self) -> &mut dyn Tissue {
+        match self {
+            Self::Springs(springs) => springs.as_mut(),
+        }
+    }
+}
 
 /// A head in motion.
 #[derive(Clone, Debug)]
 pub struct Simulation {
     head: Arc<Head>,
-    tissue: Tissue,
+    numbering: Numbering,
+    model: Model,
+    muscles: Muscles,
     contact: Contact,
     time: i64,
     epoch: u32,
     state: Controls,
     rate: Controls,
-    /// Simulated vertices: movable ones, then the fixed rim.
-    position: Vec<Vec3A>,
-    velocity: Vec<Vec3A>,
-    rest: Vec<Vec3A>,
-    force: Vec<Vec3A>,
-    /// Stiffness of all a vertex's springs to bone, muscle and lid, and what they pull with at rest.
-    hold: Vec<f32>,
-    rest_pull: Vec<Vec3A>,
-    /// Displacement of every control point of every fibre.
-    shift: Vec<Vec3A>,
-    /// All fibres' control points, displaced, and where each fibre starts among them.
-    points: Vec<Vec3>,
-    rest_points: Vec<Vec3>,
-    starts: Vec<usize>,
-    merges: Vec<Merge>,
     lip_contact: bool,
     muscle_stiffness: f32,
 }
@@ -64,46 +62,20 @@ impl Simulation {
     /// The head at rest at time 0.
     #[must_use]
     pub fn new(head: Arc<Head>) -> Self {
-        let tissue = Tissue::new(&head);
-        let rest: Vec<Vec3A> = tissue
-            .vertices
-            .iter()
-            .map(|&v| head.skin.mesh.positions[v as usize].into())
-            .collect();
-        let contact = Contact::new(&head, &tissue);
-        let rest_points: Vec<Vec3> = head
-            .fibres
-            .iter()
-            .flat_map(|f| f.points.iter().copied())
-            .collect();
-        let mut starts = vec![0];
-        for fibre in &head.fibres {
-            starts.push(starts[starts.len() - 1] + fibre.points.len());
-        }
-        let mut simulation = Self {
+        let numbering = Numbering::new(&head);
+        Self {
             time: 0,
             epoch: 0,
             state: Controls::default(),
             rate: Controls::default(),
-            position: rest.clone(),
-            velocity: vec![Vec3A::ZERO; rest.len()],
-            force: vec![Vec3A::ZERO; rest.len()],
-            rest_pull: vec![Vec3A::ZERO; tissue.movable],
-            shift: vec![Vec3A::ZERO; rest_points.len()],
-            hold: vec![0.0; tissue.movable],
-            points: rest_points.clone(),
-            rest_points,
-            starts,
-            merges: merges(&head.fibres),
-            rest,
-            contact,
-            tissue,
+            model: Model::Springs(Box::new(Springs::new(&head, &numbering))),
+            muscles: Muscles::new(&head),
+            contact: Contact::new(&head, &numbering),
+            numbering,
             head,
             lip_contact: true,
             muscle_stiffness: 1.0,
-        };
-        simulation.sum_holds();
-        simulation
+        }
     }
 
     /// The head that moves.
@@ -121,7 +93,13 @@ impl Simulation {
     /// Springs of all kinds.
     #[must_use]
     pub fn spring_count(&self) -> usize {
-        self.tissue.spring_count()
+        self.model.tissue().spring_count()
+    }
+
+    /// Where the control points of all fibres are, mm, one fibre of [`Head::fibres`] after the other.
+    #[must_use]
+    pub fn fibre_points(&self) -> &[Vec3] {
+        self.muscles.points()
     }
 
     /// Sets the clock; the state stays.
@@ -142,22 +120,24 @@ impl Simulation {
     /// Scales all springs between skin and muscle; at 0 no contraction can move the skin.
     pub fn set_muscle_stiffness(&mut self, scale: f32) {
         self.muscle_stiffness = scale;
-        self.sum_holds();
     }
 
     /// One step towards `controls`.
     pub fn step(&mut self, controls: &Controls) {
         self.follow(&controls.clamped());
         let mandible = self.head.mandible(self.state[Control::Jaw]);
-        self.contract(&mandible);
-        self.pull(&mandible);
-        self.stretch();
-        self.integrate();
-        let mut skin = Bodies {
-            position: &mut self.position,
-            velocity: &mut self.velocity,
+        self.muscles.contract(&self.head, &self.state, &mandible);
+        let drive = Drive {
+            head: &self.head,
+            state: &self.state,
+            mandible,
+            muscles: &self.muscles,
+            muscle_stiffness: self.muscle_stiffness,
         };
-        self.contact.resolve(&mut skin, &mandible, self.lip_contact);
+        let tissue = self.model.tissue_mut();
+        tissue.step(&drive);
+        self.contact
+            .resolve(tissue.skin_mut(), &mandible, self.lip_contact);
         self.time += STEP_TICKS;
     }
 
@@ -173,19 +153,31 @@ impl Simulation {
             frame.velocity.clear();
             frame.velocity.resize(skin.len(), Vec3::ZERO);
         }
-        for (i, &v) in self.tissue.vertices[..self.tissue.movable]
-            .iter()
-            .enumerate()
-        {
-            frame.skin[v as usize] = self.position[i].into();
-            frame.velocity[v as usize] = self.velocity[i].into();
+        let nodes = self.model.tissue().skin();
+        for (i, &v) in self.moving() {
+            frame.skin[v as usize] = nodes.place(i).into();
+            frame.velocity[v as usize] = nodes.velocity(i).into();
+        }
+        frame.inner.clear();
+        if let Some(inner) = self.model.tissue().inner() {
+            let count = 0..inner.x.len();
+            frame
+                .inner
+                .extend(count.clone().map(|i| Vec3::from(inner.place(i))));
+            frame
+                .inner
+                .extend(count.map(|i| Vec3::from(inner.velocity(i))));
         }
     }
 
-    /// Goes back to a saved frame of the same head; a frame of another size is refused.
+    /// Goes back to a saved frame of the same head; a frame of another size is refused. One without
+    /// anything below the skin, as [`Head::rest_frame`], leaves that at rest.
     pub fn restore(&mut self, frame: &KeyFrame) -> bool {
+        let tissue = self.model.tissue_mut();
+        let inner = tissue.inner().map_or(0, |inner| inner.x.len());
         if frame.skin.len() != self.head.skin.mesh.positions.len()
             || frame.velocity.len() != frame.skin.len()
+            || !(frame.inner.is_empty() || frame.inner.len() == 2 * inner)
         {
             return false;
         }
@@ -193,14 +185,29 @@ impl Simulation {
         self.epoch = frame.epoch;
         self.state = frame.state;
         self.rate = frame.state_rate;
-        for (i, &v) in self.tissue.vertices[..self.tissue.movable]
-            .iter()
-            .enumerate()
-        {
-            self.position[i] = frame.skin[v as usize].into();
-            self.velocity[i] = frame.velocity[v as usize].into();
+        let nodes = tissue.skin_mut();
+        let moving = &self.numbering.vertices[..self.numbering.movable];
+        for (i, &v) in moving.iter().enumerate() {
+            nodes.set_place(i, frame.skin[v as usize].into());
+            nodes.set_velocity(i, frame.velocity[v as usize].into());
+        }
+        if frame.inner.is_empty() {
+            tissue.reset_inner();
+        } else if let Some(nodes) = tissue.inner_mut() {
+            let (places, velocities) = frame.inner.split_at(inner);
+            for (i, (place, velocity)) in places.iter().zip(velocities).enumerate() {
+                nodes.set_place(i, (*place).into());
+                nodes.set_velocity(i, (*velocity).into());
+            }
         }
         true
+    }
+
+    /// The nodes that move, each with its skin vertex.
+    fn moving(&self) -> impl Iterator<Item = (usize, &u32)> {
+        self.numbering.vertices[..self.numbering.movable]
+            .iter()
+            .enumerate()
     }
 
     /// Muscles, jaw and the rest follow their controls with inertia: no joint moves at once.
@@ -217,135 +224,6 @@ impl Simulation {
             let v = (v + rate * gain * (wanted[control] - x)) / ((1.0 + gain) * (1.0 + gain));
             self.rate[control] = v;
             self.state[control] = x + v * STEP_S;
-        }
-    }
-
-    /// Displaces all fibres' control points.
-    fn contract(&mut self, mandible: &Affine3A) {
-        let jaw_still = self.state[Control::Jaw].abs() < STILL;
-        for (k, fibre) in self.head.fibres.iter().enumerate() {
-            let range = self.starts[k]..self.starts[k + 1];
-            if fibre.rests(&self.state, jaw_still, STILL) {
-                self.points[range.clone()].copy_from_slice(&self.rest_points[range]);
-            } else {
-                fibre.contracted(&self.state, mandible, &mut self.points[range]);
-            }
-        }
-        for merge in &self.merges {
-            let end = self.starts[merge.puller + 1] - 1;
-            let puller = &self.head.fibres[merge.puller];
-            let share = puller.mandible.last().copied().unwrap_or(0.0);
-            let pull = self.points[end] - carried(self.rest_points[end], share, mandible);
-            self.points[self.starts[merge.fibre] + merge.point] += pull * merge.share;
-        }
-        for ((shift, point), rest) in self
-            .shift
-            .iter_mut()
-            .zip(&self.points)
-            .zip(&self.rest_points)
-        {
-            *shift = (*point - *rest).into();
-        }
-    }
-
-    /// Forces of the springs to bone, muscles and lids.
-    fn pull(&mut self, mandible: &Affine3A) {
-        for ((force, base), (position, hold)) in self
-            .force
-            .iter_mut()
-            .zip(&self.rest_pull)
-            .zip(self.position.iter().zip(&self.hold))
-        {
-            *force = *base - *position * *hold;
-        }
-        // The rim takes forces of its edges but does not move.
-        self.force[self.tissue.movable..].fill(Vec3A::ZERO);
-        for &(i, stiffness) in &self.tissue.jawed {
-            let rest = self.rest[i as usize];
-            self.force[i as usize] += (mandible.transform_point3a(rest) - rest) * stiffness;
-        }
-        let scale = self.muscle_stiffness;
-        for (k, range) in self.tissue.fibres.windows(2).enumerate() {
-            // Most muscles rest most of the time: nothing of theirs pulls.
-            let moved = &self.shift[self.starts[k]..self.starts[k + 1]];
-            if moved
-                .iter()
-                .all(|s| s.length_squared() < STILL_MM * STILL_MM)
-            {
-                continue;
-            }
-            for a in &self.tissue.attachments[range[0] as usize..range[1] as usize] {
-                let j = a.point as usize;
-                let shift = moved[j].lerp(moved[j + 1], a.share);
-                self.force[a.vertex as usize] += shift * (a.stiffness * scale);
-            }
-        }
-        for &(i, k, stiffness) in &self.tissue.lids {
-            let lid = self.head.lids[k as usize];
-            let (eye, closed) = if lid.left {
-                (&self.head.eyes[0], self.state[Control::LidL])
-            } else {
-                (&self.head.eyes[1], self.state[Control::LidR])
-            };
-            // The orbicularis oculi's part in the lids closes what they have left open.
-            let muscle = self.state[Control::OrbicularisOculiPalpebral] * scale.min(1.0);
-            let closed = 1.0 - (1.0 - closed) * (1.0 - muscle);
-            // The upper lid follows the gaze down and up.
-            let follow = if lid.turn < 0.0 {
-                0.55 * lid.hold * (1.0 - closed)
-            } else {
-                0.0
-            };
-            let gaze = follow * self.state[Control::GazePitch];
-            let turn = Quat::from_rotation_x(-(lid.turn * closed * LID_OVERSHOOT + gaze));
-            let out = self.rest[i as usize] - Vec3A::from(eye.centre);
-            self.force[i as usize] += (turn.mul_vec3a(out) - out) * stiffness;
-        }
-    }
-
-    /// What of [`Self::pull`] does not depend on controls.
-    fn sum_holds(&mut self) {
-        self.hold.copy_from_slice(&self.tissue.bone);
-        for a in &self.tissue.attachments {
-            self.hold[a.vertex as usize] += a.stiffness * self.muscle_stiffness;
-        }
-        for &(i, _, stiffness) in &self.tissue.lids {
-            self.hold[i as usize] += stiffness;
-        }
-        for ((base, rest), hold) in self.rest_pull.iter_mut().zip(&self.rest).zip(&self.hold) {
-            *base = *rest * *hold;
-        }
-    }
-
-    /// Forces of the skin's own springs: each edge once, its first end's sum kept in a register.
-    fn stretch(&mut self) {
-        let mut edges = self.tissue.edges.iter();
-        for (i, w) in self.tissue.starts.windows(2).enumerate() {
-            let p = self.position[i];
-            let mut sum = Vec3A::ZERO;
-            for edge in edges.by_ref().take((w[1] - w[0]) as usize) {
-                let other = edge.other as usize;
-                let d = self.position[other] - p;
-                let strain = 1.0 - edge.rest_mm / d.length_squared().max(1e-8).sqrt();
-                let pull = d * (EDGE * strain.max(SLACK * strain));
-                sum += pull;
-                self.force[other] -= pull;
-            }
-            self.force[i] += sum;
-        }
-    }
-
-    /// Leapfrog: velocities at the half step, then positions; the rim stays.
-    fn integrate(&mut self) {
-        let damp = (-DAMPING * STEP_S).exp();
-        let movable = self.tissue.movable;
-        for ((velocity, position), force) in self.velocity[..movable]
-            .iter_mut()
-            .zip(&mut self.position[..movable])
-            .zip(&self.force)
-        {
-            *velocity = (*velocity + *force * STEP_S) * damp;
-            *position += *velocity * STEP_S;
         }
     }
 }

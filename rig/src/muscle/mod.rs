@@ -8,11 +8,13 @@
 
 mod grid;
 mod merge;
+mod system;
 
 use glam::{Affine3A, Vec3, vec3};
 
 pub use grid::{Axis, GridPoint, MuscleGrid, Space, rebuild};
-pub(crate) use merge::{Merge, merges};
+use merge::{Merge, merges};
+pub(crate) use system::Muscles;
 
 use crate::{Control, Controls, Muscle};
 

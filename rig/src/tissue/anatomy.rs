@@ -1,10 +1,8 @@
-//! Skin as a mass-spring mesh on muscles and skull (HEADSHOP 4.2, HABER 5.3): which springs there are.
+//! How the tissue is made, as functions of a place on the reference head: which skin moves, how fast it
+//! is to the bone under it, what share of the mandible's motion it takes, which fibres hold it.
 //!
-//! Edges of the skin mesh are springs; every vertex has springs to the bone under it (skull or
-//! mandible, by a share), those near a muscle have springs to its fibres, those at the lids to the
-//! lids. All vertices have the same mass: on a graded mesh, masses by area would force a step
-//! several times shorter. Stiffness is therefore given per unit of mass, in 1/s². Volume
-//! preservation and a biphasic stiffness are not here yet.
+//! All vertices have the same mass: on a graded mesh, masses by area would force a step several times
+//! shorter. Stiffness is therefore given per unit of mass, in 1/s².
 
 use glam::Vec3;
 
@@ -15,7 +13,7 @@ use crate::muscle::Contraction;
 use crate::{Head, Muscle};
 
 /// Stiffness per mass of a skin edge.
-pub(crate) const EDGE: f32 = 34_000.0;
+pub(super) const EDGE: f32 = 34_000.0;
 /// Of the spring to the bone where the skin lies thin on it, and where it lies on soft tissue.
 const BONE_THIN: f32 = 60_000.0;
 const BONE_SOFT: f32 = 1_500.0;
@@ -24,7 +22,7 @@ const FOREHEAD: f32 = 0.12;
 /// Of a spring to a muscle fibre right beside the vertex.
 const FIBRE: f32 = 26_000.0;
 /// Of a lid's hold on its margin.
-const LID: f32 = 150_000.0;
+pub(super) const LID: f32 = 150_000.0;
 /// A fibre holds vertices within this distance, mm; one of the thin sheets within the other.
 const FIBRE_REACH_MM: f32 = 13.0;
 const SHEET_REACH_MM: f32 = 19.0;
@@ -33,7 +31,7 @@ const FIBRES_MAX: usize = 6;
 
 /// A spring to a place on a fibre: between control points `point` and `point + 1`.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Attachment {
+pub(super) struct Attachment {
     pub vertex: u32,
     pub fibre: u32,
     pub point: u32,
@@ -41,175 +39,23 @@ pub(crate) struct Attachment {
     pub stiffness: f32,
 }
 
-/// A spring along an edge of the skin, seen from its end of the lower number.
-#[derive(Clone, Copy, Debug)]
-pub(crate) struct Edge {
-    pub other: u32,
-    pub rest_mm: f32,
-}
-
-/// The springs of a head. Vertices are renumbered so that those that move come first, in an order
-/// that keeps neighbours close.
-#[derive(Clone, Debug)]
-pub(crate) struct Tissue {
-    /// Skin vertex of each simulated one.
-    pub vertices: Vec<u32>,
-    /// Simulated vertex of each skin vertex; `u32::MAX` where it is none.
-    number: Vec<u32>,
-    /// How many of them move; the rest is the fixed rim that edges end at.
-    pub movable: usize,
-    /// The edges of each movable vertex to those after it, one vertex after the other.
-    pub edges: Vec<Edge>,
-    /// Where each movable vertex's edges start among them, and where the last one's end.
-    pub starts: Vec<u32>,
-    /// Per movable vertex: stiffness to the bone, skull and mandible together.
-    pub bone: Vec<f32>,
-    /// Vertices that the mandible takes along, with its share of that stiffness.
-    pub jawed: Vec<(u32, f32)>,
-    /// By fibre, and where each fibre's start among them.
-    pub attachments: Vec<Attachment>,
-    pub fibres: Vec<u32>,
-    /// `(simulated vertex, index into Head::lids, stiffness)`.
-    pub lids: Vec<(u32, u32, f32)>,
-}
-
 /// Where on a lip or beside it a vertex lies: above the slit, below it, or neither.
-#[derive(Clone, Copy, PartialEq, Eq)]
-enum Side {
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Side {
     Upper,
     Lower,
     Neither,
 }
 
-impl Tissue {
-    pub(crate) fn new(head: &Head) -> Self {
-        let rest = &head.skin.mesh.positions;
-        let reference = &head.skin.reference;
-        let movable_skin: Vec<bool> = reference.iter().map(|p| moves(*p)).collect();
-        let mut neighbours = vec![Vec::new(); rest.len()];
-        for t in &head.skin.mesh.triangles {
-            for i in 0..3 {
-                let (a, b) = (t[i], t[(i + 1) % 3]);
-                neighbours[a as usize].push(b);
-                neighbours[b as usize].push(a);
-            }
-        }
-        for list in &mut neighbours {
-            list.sort_unstable();
-            list.dedup();
-        }
-
-        let mut vertices: Vec<u32> = (0..rest.len() as u32)
-            .filter(|&i| movable_skin[i as usize])
-            .collect();
-        vertices.sort_by_key(|&i| morton(rest[i as usize]));
-        let movable = vertices.len();
-        let mut number = vec![u32::MAX; rest.len()];
-        for (new, &old) in vertices.iter().enumerate() {
-            number[old as usize] = new as u32;
-        }
-        let (mut edges, mut starts) = (Vec::new(), vec![0]);
-        for i in 0..movable {
-            let old = vertices[i];
-            for &other in &neighbours[old as usize] {
-                if number[other as usize] == u32::MAX {
-                    number[other as usize] = vertices.len() as u32;
-                    vertices.push(other);
-                }
-                let j = number[other as usize];
-                if j > i as u32 {
-                    let rest_mm = rest[old as usize].distance(rest[other as usize]);
-                    edges.push(Edge { other: j, rest_mm });
-                }
-            }
-            starts.push(edges.len() as u32);
-        }
-
-        let sides = sides(head);
-        // Springs to bone by what lies under that place of the reference head.
-        let at = |i: usize| reference[vertices[i] as usize];
-        let mut lid_hold = vec![0.0_f32; rest.len()];
-        for lid in &head.lids {
-            lid_hold[lid.vertex as usize] = lid.hold;
-        }
-        let mut attachments: Vec<Attachment> = (0..movable)
-            .flat_map(|i| {
-                let vertex = vertices[i] as usize;
-                attach(head, i, rest[vertex], sides[vertex], lid_hold[vertex])
-            })
-            .collect();
-        attachments.sort_by_key(|a| a.fibre);
-        let fibres = (0..=head.fibres.len() as u32)
-            .map(|k| attachments.partition_point(|a| a.fibre < k) as u32)
-            .collect();
-        let lids = head
-            .lids
-            .iter()
-            .enumerate()
-            .filter(|(_, lid)| (number[lid.vertex as usize] as usize) < movable)
-            .map(|(k, lid)| {
-                (
-                    number[lid.vertex as usize],
-                    k as u32,
-                    LID * lid.hold * lid.hold,
-                )
-            })
-            .collect();
-        let bone: Vec<f32> = (0..movable)
-            .map(|i| bone_stiffness(at(i), sides[vertices[i] as usize]))
-            .collect();
-        let jawed = (0..movable)
-            .map(|i| {
-                (
-                    i as u32,
-                    bone[i] * mandible_share(at(i), sides[vertices[i] as usize]),
-                )
-            })
-            .filter(|(_, stiffness)| *stiffness > 0.0)
-            .collect();
-        Self {
-            bone,
-            jawed,
-            vertices,
-            number,
-            movable,
-            edges,
-            starts,
-            attachments,
-            fibres,
-            lids,
-        }
-    }
-
-    /// The simulated vertex of a skin vertex, where that one moves.
-    pub(crate) fn moving(&self, skin_vertex: u32) -> Option<u32> {
-        let number = self.number[skin_vertex as usize];
-        ((number as usize) < self.movable).then_some(number)
-    }
-
-    /// Springs of all kinds.
-    pub(crate) fn spring_count(&self) -> usize {
-        self.edges.len() + self.movable + self.attachments.len() + self.lids.len()
-    }
-}
-
 /// Whether the skin there moves at all: the face from the hairline to the throat, back to the ears.
-fn moves(p: Vec3) -> bool {
+pub(super) fn moves(p: Vec3) -> bool {
     let ahead = p.z > 8.0 + 0.35 * (p.y + 30.0).abs().min(60.0);
     let side = if p.y > 60.0 { 66.0 } else { 75.0 };
     ahead && (-98.0..110.0).contains(&p.y) && p.x.abs() < side
 }
 
-/// Interleaves the bits of a place on a 4 mm grid, so that neighbours lie close in memory.
-fn morton(p: Vec3) -> u64 {
-    let cell = ((p + 256.0) / 4.0).max(Vec3::ZERO);
-    let spread =
-        |v: f32| (0..10).fold(0_u64, |sum, bit| sum | ((v as u64 >> bit & 1) << (3 * bit)));
-    spread(cell.x) | spread(cell.y) << 1 | spread(cell.z) << 2
-}
-
 /// Which lip a skin vertex belongs to; off the lips' columns, by the height of the slit there.
-fn sides(head: &Head) -> Vec<Side> {
+pub(super) fn sides(head: &Head) -> Vec<Side> {
     let rest = &head.skin.reference;
     let corner = head
         .lips
@@ -243,7 +89,7 @@ fn slit_height(x: f32) -> f32 {
 }
 
 /// How much of the mandible's motion the bone under a vertex takes part in.
-fn mandible_share(p: Vec3, side: Side) -> f32 {
+pub(super) fn mandible_share(p: Vec3, side: Side) -> f32 {
     // Between the lips a step, beyond the corner a ramp that widens backwards over the cheek.
     let beyond = (p.x.abs() - 24.0).max(0.0);
     let half = 1.5 + 0.8 * beyond;
@@ -259,7 +105,7 @@ fn mandible_share(p: Vec3, side: Side) -> f32 {
 }
 
 /// Stiff on forehead, nose and cheek bones, soft on cheeks and lips.
-fn bone_stiffness(p: Vec3, side: Side) -> f32 {
+pub(super) fn bone_stiffness(p: Vec3, side: Side) -> f32 {
     let from_mouth = ((p.x / 1.25).powi(2) + (p.y + 36.0).powi(2)).sqrt();
     let near_mouth = 1.0 - ((from_mouth - 22.0) / 34.0).clamp(0.0, 1.0);
     let nose = (1.0 - (p.x.abs() - 9.0).max(0.0) / 10.0).clamp(0.0, 1.0)
@@ -283,7 +129,7 @@ fn bone_stiffness(p: Vec3, side: Side) -> f32 {
 }
 
 /// The springs of one vertex to the fibres near it.
-fn attach(head: &Head, vertex: usize, p: Vec3, side: Side, lid: f32) -> Vec<Attachment> {
+pub(super) fn attach(head: &Head, vertex: usize, p: Vec3, side: Side, lid: f32) -> Vec<Attachment> {
     let mut found: Vec<(f32, Attachment)> = Vec::new();
     for (f, fibre) in head.fibres.iter().enumerate() {
         let other_lip = match fibre.muscle {

@@ -1,0 +1,125 @@
+//! Point masses, a column per coordinate, and which of the skin's vertices they stand for.
+
+use glam::{Vec3, Vec3A, vec3a};
+
+use super::anatomy::moves;
+use crate::Head;
+
+/// Places, mm, and velocities, mm/s, of point masses.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct Nodes {
+    pub x: Vec<f32>,
+    pub y: Vec<f32>,
+    pub z: Vec<f32>,
+    pub vx: Vec<f32>,
+    pub vy: Vec<f32>,
+    pub vz: Vec<f32>,
+}
+
+impl Nodes {
+    /// At these places, still.
+    pub(crate) fn at(places: &[Vec3]) -> Self {
+        let still = vec![0.0; places.len()];
+        Self {
+            x: places.iter().map(|p| p.x).collect(),
+            y: places.iter().map(|p| p.y).collect(),
+            z: places.iter().map(|p| p.z).collect(),
+            vx: still.clone(),
+            vy: still.clone(),
+            vz: still,
+        }
+    }
+
+    pub(crate) fn place(&self, i: usize) -> Vec3A {
+        vec3a(self.x[i], self.y[i], self.z[i])
+    }
+
+    pub(crate) fn set_place(&mut self, i: usize, p: Vec3A) {
+        (self.x[i], self.y[i], self.z[i]) = (p.x, p.y, p.z);
+    }
+
+    pub(crate) fn velocity(&self, i: usize) -> Vec3A {
+        vec3a(self.vx[i], self.vy[i], self.vz[i])
+    }
+
+    pub(crate) fn set_velocity(&mut self, i: usize, v: Vec3A) {
+        (self.vx[i], self.vy[i], self.vz[i]) = (v.x, v.y, v.z);
+    }
+}
+
+/// Which skin vertices are simulated: those that move come first, in an order that keeps neighbours
+/// close in memory; then the rim that their edges end at, which stays where it is.
+#[derive(Clone, Debug)]
+pub(crate) struct Numbering {
+    /// Skin vertex of each node.
+    pub vertices: Vec<u32>,
+    /// How many of the nodes move.
+    pub movable: usize,
+    /// Node of each skin vertex; `u32::MAX` where it is none.
+    number: Vec<u32>,
+    /// Edges between nodes of which one at least moves: the lower number first, in order, each once.
+    pub edges: Vec<[u32; 2]>,
+}
+
+impl Numbering {
+    pub(crate) fn new(head: &Head) -> Self {
+        let rest = &head.skin.mesh.positions;
+        let mut vertices: Vec<u32> = (0..rest.len() as u32)
+            .filter(|&i| moves(head.skin.reference[i as usize]))
+            .collect();
+        vertices.sort_by_key(|&i| morton(rest[i as usize]));
+        let movable = vertices.len();
+        let mut number = vec![u32::MAX; rest.len()];
+        for (new, &old) in vertices.iter().enumerate() {
+            number[old as usize] = new as u32;
+        }
+        let mut edges = Vec::new();
+        for t in &head.skin.mesh.triangles {
+            if t.iter().all(|&v| number[v as usize] as usize >= movable) {
+                continue;
+            }
+            for &v in t {
+                if number[v as usize] == u32::MAX {
+                    number[v as usize] = vertices.len() as u32;
+                    vertices.push(v);
+                }
+            }
+            for i in 0..3 {
+                let (a, b) = (number[t[i] as usize], number[t[(i + 1) % 3] as usize]);
+                if (a.min(b) as usize) < movable {
+                    edges.push([a.min(b), a.max(b)]);
+                }
+            }
+        }
+        edges.sort_unstable();
+        edges.dedup();
+        Self {
+            vertices,
+            movable,
+            number,
+            edges,
+        }
+    }
+
+    /// The node of a skin vertex, where that one moves.
+    pub(crate) fn moving(&self, skin_vertex: u32) -> Option<u32> {
+        let number = self.number[skin_vertex as usize];
+        ((number as usize) < self.movable).then_some(number)
+    }
+
+    /// What the nodes have of a list with one entry per skin vertex.
+    pub(crate) fn of<T: Copy>(&self, per_vertex: &[T]) -> Vec<T> {
+        self.vertices
+            .iter()
+            .map(|&v| per_vertex[v as usize])
+            .collect()
+    }
+}
+
+/// Interleaves the bits of a place on a 4 mm grid, so that neighbours lie close in memory.
+fn morton(p: Vec3) -> u64 {
+    let cell = ((p + 256.0) / 4.0).max(Vec3::ZERO);
+    let spread =
+        |v: f32| (0..10).fold(0_u64, |sum, bit| sum | ((v as u64 >> bit & 1) << (3 * bit)));
+    spread(cell.x) | spread(cell.y) << 1 | spread(cell.z) << 2
+}
