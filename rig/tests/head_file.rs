@@ -14,7 +14,7 @@ use std::sync::OnceLock;
 
 use glam::Vec3;
 use like::{assert_alike, decorated, reference};
-use mouthpiece_rig::{Head, HeadError, TissueModel, TissueRecord};
+use mouthpiece_rig::{Head, HeadError, Muscle, TissueModel, TissueRecord};
 use proptest::prelude::*;
 
 /// Of positions that went through metres and another program's floats, mm.
@@ -201,6 +201,103 @@ fn what_is_broken_is_named_with_its_mend() {
         }
         assert!(!said.contains('\n') && said.len() < 400, "{said}");
     }
+}
+
+/// What is said of the reference head after `change`.
+fn spoilt(change: impl FnOnce(&mut Head)) -> String {
+    let mut head = reference().clone();
+    change(&mut head);
+    refused(&head.write())
+}
+
+#[test]
+fn a_spring_without_length_is_refused() {
+    let [a, b, _] = reference().skin.mesh.triangles[500];
+    let said = spoilt(|head| {
+        let positions = &mut head.skin.mesh.positions;
+        positions[a as usize] = positions[b as usize];
+    });
+    assert!(said.contains("no length"), "{said}");
+    // Other edges may end there too: one of the two vertices is named in any case.
+    let named = |v: u32| {
+        said.split(|c: char| !c.is_ascii_digit())
+            .any(|w| w == v.to_string())
+    };
+    assert!(named(a) && named(b), "{a} {b}: {said}");
+}
+
+#[test]
+fn a_vertex_that_nothing_holds_is_refused() {
+    let alone = reference().lips.upper[3][0];
+    let said = spoilt(|head| {
+        // Only the mesh: a triangle less, or a few, is a hole that many a scan has.
+        let skin = &mut head.skin;
+        let keeps = |t: &[u32; 3]| !t.contains(&alone);
+        let kept: Vec<bool> = skin.mesh.triangles.iter().map(keeps).collect();
+        let mut next = kept.iter();
+        skin.wedges.retain(|_| *next.next().unwrap());
+        skin.mesh.triangles.retain(keeps);
+    });
+    assert!(said.contains(&format!("vertex {alone}:")), "{said}");
+    assert!(said.contains("nothing holds it"), "{said}");
+}
+
+#[test]
+fn a_muscle_outside_the_skin_is_refused() {
+    let spoil = |depth: f32| {
+        spoilt(|head| {
+            let grid = &mut head.muscles[4];
+            grid.muscle = Muscle::Buccinator;
+            grid.fibres[1][2].depth = depth;
+        })
+    };
+    for (depth, fault) in [(-0.4, "outside the skin"), (1.6, "in the bone")] {
+        let said = spoil(depth);
+        assert!(
+            said.contains("muscle Buccinator, fibre 1, point 2"),
+            "{said}"
+        );
+        assert!(said.contains(fault), "{said}");
+    }
+    // A scrap that floats before the cheek, as scans have them, and a muscle painted on it.
+    let said = spoilt(|head| {
+        let cheek = head.muscles[4].fibres[1][2].at.vertices;
+        let skin = &mut head.skin;
+        let first = skin.mesh.positions.len() as u32;
+        for v in cheek.map(|v| v as usize) {
+            let place = skin.mesh.positions[v] + Vec3::new(0.0, 0.0, 40.0);
+            skin.mesh.positions.push(place);
+            skin.mesh.normals.push(skin.mesh.normals[v]);
+            skin.mesh.uvs.push(skin.mesh.uvs[v]);
+            skin.mesh.occlusion.push(skin.mesh.occlusion[v]);
+            skin.reference.push(skin.reference[v]);
+            skin.weight.push(skin.weight[v]);
+            skin.vermilion.push(skin.vermilion[v]);
+            skin.wet.push(skin.wet[v]);
+        }
+        let scrap = [first, first + 1, first + 2];
+        skin.mesh.triangles.push(scrap);
+        skin.wedges.push(cheek.map(|v| skin.mesh.uvs[v as usize]));
+        let grid = &mut head.muscles[4];
+        grid.muscle = Muscle::Buccinator;
+        grid.fibres[1][2].at.vertices = scrap;
+    });
+    assert!(
+        said.contains("muscle Buccinator, fibre 1, point 2"),
+        "{said}"
+    );
+    assert!(said.contains("outside the skin by"), "{said}");
+}
+
+#[test]
+fn a_fibre_without_length_is_refused() {
+    let said = spoilt(|head| {
+        let grid = &mut head.muscles[4];
+        grid.muscle = Muscle::Buccinator;
+        grid.fibres[1][2] = grid.fibres[1][1];
+    });
+    assert!(said.contains("muscle Buccinator, fibre 1"), "{said}");
+    assert!(said.contains("lie on one another"), "{said}");
 }
 
 #[test]

@@ -5,13 +5,15 @@ use std::collections::HashSet;
 use glam::Vec3;
 
 use super::parts::{BONES, REQUIRED};
-use super::{ANEW, HeadError, KEEP};
+use super::{ANEW, HeadError, KEEP, nodes};
 use crate::{Head, Layer, MuscleGrid, Part, Skin, SurfacePoint, TissueRecord};
 
 /// Nothing of a head lies further from its middle, mm.
 const FAR_MM: f32 = 2000.0;
 /// By how much shares may miss a sum of 1 or the range 0..1: other programs' arithmetic.
 const SLACK: f32 = 1e-3;
+/// By how much of the way from skin to bone a muscle may miss it.
+const DEPTH_SLACK: f32 = 0.02;
 /// Radii of eyeballs, mm: from an infant's to more than any.
 const EYE_MM: std::ops::RangeInclusive<f32> = 4.0..=30.0;
 /// Factors from the reference head's teeth to this one's.
@@ -42,6 +44,7 @@ pub(super) fn head(head: &Head) -> Checked {
     let vertices = head.skin.mesh.positions.len();
     let on_skin = |v: u32| (v as usize) < vertices;
     lips(head, &on_skin)?;
+    nodes::skin(head)?;
     for (i, lid) in head.lids.iter().enumerate() {
         let holds = on_skin(lid.vertex) && lid.turn.is_finite() && share(lid.hold);
         that(
@@ -201,15 +204,17 @@ fn point(at: &SurfacePoint, vertices: usize) -> bool {
 fn muscle(grid: &MuscleGrid, vertices: usize) -> Checked {
     let of = || format!("muscle {:?}", grid.muscle);
     that(!grid.fibres.is_empty(), of, "it has no fibres")?;
-    for fibre in &grid.fibres {
+    for (row, fibre) in grid.fibres.iter().enumerate() {
         that(fibre.len() >= 2, of, "a fibre has fewer than two points")?;
-        let sound = fibre.iter().all(|p| {
-            point(&p.at, vertices)
-                && p.depth.is_finite()
-                && p.depth.abs() <= 2.0
-                && share(p.mandible)
-        });
+        let sound = fibre
+            .iter()
+            .all(|p| point(&p.at, vertices) && p.depth.is_finite() && share(p.mandible));
         that(sound, of, "a point of its grid cannot be")?;
+        for (i, point) in fibre.iter().enumerate() {
+            let at = || format!("{}, fibre {row}, point {i}", of());
+            that(point.depth >= -DEPTH_SLACK, at, "it lies outside the skin")?;
+            that(point.depth <= 1.0 + DEPTH_SLACK, at, "it lies in the bone")?;
+        }
     }
     let axes = grid.axes.is_empty() || grid.axes.len() == grid.fibres.len();
     that(axes, of, "it has not one axis per fibre")?;

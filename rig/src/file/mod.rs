@@ -41,6 +41,7 @@
 mod accessor;
 mod check;
 mod document;
+mod nodes;
 mod parts;
 mod picture;
 mod read;

@@ -6,7 +6,7 @@ use super::accessor::Data;
 use super::document::{Document, Node};
 use super::schema::Extras;
 use super::weld::{self, Source, Welded};
-use super::{ANEW, HeadError, KEEP, check, parts, picture};
+use super::{ANEW, HeadError, KEEP, check, nodes, parts, picture};
 use crate::{ColourMap, Fibre, Head, LipStencils, Part, Skin};
 
 /// Deepest nesting of nodes.
@@ -64,6 +64,7 @@ pub(super) fn head(document: &Document, binary: &[u8]) -> Result<Head, HeadError
     check::head(&head)?;
     head.colour = colour(&data)?;
     head.fibres = fibres(&head);
+    nodes::fibres(&head)?;
     Ok(head)
 }
 
