@@ -152,8 +152,8 @@ impl Contact {
         };
         for (i, &v) in column.get().iter().enumerate() {
             let v = v as usize;
-            let place = skin.place(v) + self.drawn[v];
-            (chain.y[i], chain.z[i], chain.speed[i]) = (place.y, place.z, skin.vy[v]);
+            let place = skin.place[v] + self.drawn[v];
+            (chain.y[i], chain.z[i], chain.speed[i]) = (place.y, place.z, skin.velocity[v].y);
         }
         chain
     }
@@ -161,8 +161,8 @@ impl Contact {
     fn put(&self, skin: &mut Nodes, column: &Column, chain: &Chain) {
         for (i, &v) in column.get().iter().enumerate() {
             let v = v as usize;
-            skin.y[v] = chain.y[i] - self.drawn[v].y;
-            skin.vy[v] = chain.speed[i];
+            skin.place[v].y = chain.y[i] - self.drawn[v].y;
+            skin.velocity[v].y = chain.speed[i];
         }
     }
 
@@ -172,7 +172,7 @@ impl Contact {
         for [upper, lower] in &self.columns {
             for &i in upper.get()[1..].iter().chain(&lower.get()[1..]) {
                 let i = i as usize;
-                let p = skin.place(i) + self.drawn[i];
+                let p = skin.place[i] + self.drawn[i];
                 // The arches are described where they stand on the reference head.
                 let q = self.bite.reference(p.into());
                 let up = in_front(q, UPPER_EDGE_Y, 14.0, UPPER_FRONT_Z);
@@ -180,8 +180,8 @@ impl Contact {
                 let low = in_front(q, LOWER_EDGE_Y - 14.0, 14.0, LOWER_FRONT_Z);
                 let push = up.max(low) * self.bite.scale.z;
                 if push > 0.0 {
-                    skin.z[i] += push;
-                    skin.vz[i] = skin.vz[i].max(0.0);
+                    skin.place[i].z += push;
+                    skin.velocity[i].z = skin.velocity[i].z.max(0.0);
                 }
             }
         }
@@ -193,14 +193,14 @@ impl Contact {
             let least = eye.radius + EYE_CLEARANCE_MM;
             for &i in list {
                 let i = i as usize;
-                let out = skin.place(i) + self.drawn[i] - centre;
+                let out = skin.place[i] + self.drawn[i] - centre;
                 let distance = out.length();
                 if distance < least && distance > 1.0 {
                     let normal = out / distance;
-                    skin.set_place(i, centre + normal * least - self.drawn[i]);
-                    let velocity = skin.velocity(i);
+                    skin.place[i] = centre + normal * least - self.drawn[i];
+                    let velocity = skin.velocity[i];
                     let inwards = velocity.dot(normal).min(0.0);
-                    skin.set_velocity(i, velocity - normal * inwards);
+                    skin.velocity[i] = velocity - normal * inwards;
                 }
             }
         }

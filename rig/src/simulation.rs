@@ -155,18 +155,13 @@ impl Simulation {
         }
         let nodes = self.model.tissue().skin();
         for (i, &v) in self.moving() {
-            frame.skin[v as usize] = nodes.place(i).into();
-            frame.velocity[v as usize] = nodes.velocity(i).into();
+            frame.skin[v as usize] = nodes.place[i].into();
+            frame.velocity[v as usize] = nodes.velocity[i].into();
         }
         frame.inner.clear();
         if let Some(inner) = self.model.tissue().inner() {
-            let count = 0..inner.x.len();
-            frame
-                .inner
-                .extend(count.clone().map(|i| Vec3::from(inner.place(i))));
-            frame
-                .inner
-                .extend(count.map(|i| Vec3::from(inner.velocity(i))));
+            let both = inner.place.iter().chain(&inner.velocity);
+            frame.inner.extend(both.map(|p| Vec3::from(*p)));
         }
     }
 
@@ -174,7 +169,7 @@ impl Simulation {
     /// anything below the skin, as [`Head::rest_frame`], leaves that at rest.
     pub fn restore(&mut self, frame: &KeyFrame) -> bool {
         let tissue = self.model.tissue_mut();
-        let inner = tissue.inner().map_or(0, |inner| inner.x.len());
+        let inner = tissue.inner().map_or(0, |inner| inner.place.len());
         if frame.skin.len() != self.head.skin.mesh.positions.len()
             || frame.velocity.len() != frame.skin.len()
             || !(frame.inner.is_empty() || frame.inner.len() == 2 * inner)
@@ -188,16 +183,16 @@ impl Simulation {
         let nodes = tissue.skin_mut();
         let moving = &self.numbering.vertices[..self.numbering.movable];
         for (i, &v) in moving.iter().enumerate() {
-            nodes.set_place(i, frame.skin[v as usize].into());
-            nodes.set_velocity(i, frame.velocity[v as usize].into());
+            nodes.place[i] = frame.skin[v as usize].into();
+            nodes.velocity[i] = frame.velocity[v as usize].into();
         }
         if frame.inner.is_empty() {
             tissue.reset_inner();
         } else if let Some(nodes) = tissue.inner_mut() {
             let (places, velocities) = frame.inner.split_at(inner);
             for (i, (place, velocity)) in places.iter().zip(velocities).enumerate() {
-                nodes.set_place(i, (*place).into());
-                nodes.set_velocity(i, (*velocity).into());
+                nodes.place[i] = (*place).into();
+                nodes.velocity[i] = (*velocity).into();
             }
         }
         true

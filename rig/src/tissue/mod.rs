@@ -2,14 +2,16 @@
 //!
 //! | module | holds |
 //! |---|---|
-//! | `nodes` | places and velocities, a column each, and which skin vertices they are |
+//! | `nodes` | places and velocities, and which skin vertices they are |
 //! | `anatomy` | how thick and fast the tissue is, as functions of a place on the reference head |
+//! | `show` | the default model's springs as lines, for pictures |
 //! | `springs` | HEADSHOP 4.2: skin edges, springs to bone and muscle (the default) |
 //!
 //! Contact is not here: it corrects the skin's nodes after each step, whatever the model.
 
 mod anatomy;
 mod nodes;
+mod show;
 mod springs;
 
 use std::fmt::Debug;
@@ -17,6 +19,7 @@ use std::fmt::Debug;
 use glam::Affine3A;
 
 pub(crate) use nodes::{Nodes, Numbering};
+pub(crate) use show::spring_lines;
 pub(crate) use springs::Springs;
 
 use crate::muscle::Muscles;

@@ -94,7 +94,7 @@ impl Springs {
     fn pull(&mut self, drive: &Drive<'_>) {
         self.force.fill(Vec3A::ZERO);
         for i in 0..self.movable {
-            self.force[i] = (self.rest[i] - self.nodes.place(i)) * self.bone[i];
+            self.force[i] = (self.rest[i] - self.nodes.place[i]) * self.bone[i];
         }
         for &(i, stiffness) in &self.jawed {
             let rest = self.rest[i as usize];
@@ -105,7 +105,7 @@ impl Springs {
             if !drive.muscles.moved(k) && scale == 1.0 {
                 for a in &self.attachments[range[0] as usize..range[1] as usize] {
                     let i = a.vertex as usize;
-                    self.force[i] += (self.rest[i] - self.nodes.place(i)) * a.stiffness;
+                    self.force[i] += (self.rest[i] - self.nodes.place[i]) * a.stiffness;
                 }
                 continue;
             }
@@ -115,7 +115,7 @@ impl Springs {
                 let j = start + a.point as usize;
                 let shift = drive.muscles.shift()[j].lerp(drive.muscles.shift()[j + 1], a.share);
                 self.force[i] +=
-                    (self.rest[i] + shift - self.nodes.place(i)) * (a.stiffness * scale);
+                    (self.rest[i] + shift - self.nodes.place[i]) * (a.stiffness * scale);
             }
         }
         for &(i, k, stiffness) in &self.lids {
@@ -142,7 +142,7 @@ impl Springs {
             let i = i as usize;
             let centre = Vec3A::from(eye.centre);
             let target = centre + turn.mul_vec3a(self.rest[i] - centre);
-            self.force[i] += (target - self.nodes.place(i)) * stiffness;
+            self.force[i] += (target - self.nodes.place[i]) * stiffness;
         }
     }
 
@@ -150,7 +150,7 @@ impl Springs {
     fn stretch(&mut self) {
         for ([a, b], rest_mm) in self.edges.iter().zip(&self.rest_mm) {
             let (a, b) = (*a as usize, *b as usize);
-            let d = self.nodes.place(b) - self.nodes.place(a);
+            let d = self.nodes.place[b] - self.nodes.place[a];
             let strain = 1.0 - rest_mm / d.length_squared().max(1e-8).sqrt();
             let pull = d * (EDGE * strain.max(SLACK * strain));
             self.force[a] += pull;
@@ -162,10 +162,9 @@ impl Springs {
     fn integrate(&mut self) {
         let damp = (-DAMPING * STEP_S).exp();
         for i in 0..self.movable {
-            let velocity = (self.nodes.velocity(i) + self.force[i] * STEP_S) * damp;
-            self.nodes.set_velocity(i, velocity);
-            self.nodes
-                .set_place(i, self.nodes.place(i) + velocity * STEP_S);
+            let velocity = (self.nodes.velocity[i] + self.force[i] * STEP_S) * damp;
+            self.nodes.velocity[i] = velocity;
+            self.nodes.place[i] += velocity * STEP_S;
         }
     }
 }
