@@ -172,10 +172,10 @@ controls! {
     TongueOut = "tongue_out" in -1.0 ..= 1.0;
     /// Tongue body: 0 at rest to 1 with the dorsum at the palate.
     TongueBody = "tongue_body" in 0.0 ..= 1.0;
-    /// Closing of the subject's left lids, 0 open to 1 closed.
-    LidL = "lid_l" in 0.0 ..= 1.0;
+    /// Closing of the subject's left lids, 0 open to 1 closed; below 0 wide open.
+    LidL = "lid_l" in -0.4 ..= 1.0;
     /// Closing of the subject's right lids.
-    LidR = "lid_r" in 0.0 ..= 1.0;
+    LidR = "lid_r" in -0.4 ..= 1.0;
     /// Gaze to the subject's left, radians.
     GazeYaw = "gaze_yaw_rad" in -0.6 ..= 0.6;
     /// Gaze up, radians.

@@ -6,6 +6,7 @@
 //! | `articulation` | what a mouth should do, for any head |
 //! | `calibration` | an articulation turned into one head's muscles |
 //! | `control` | one number per muscle, jaw, tongue, lid, gaze and head angle |
+//! | `expression` | named settings of the muscles, scripts of them, and both over speech |
 //! | `file` | a head as a .glb file |
 //! | `head` | a head as data, with its landmarks, and where its bodies are |
 //! | `mesh` | what it is drawn of: skin, parts, the bodies they hang on |
@@ -29,6 +30,7 @@ mod articulation;
 mod calibration;
 mod contact;
 mod control;
+mod expression;
 mod file;
 mod head;
 mod key_frame;
@@ -46,6 +48,7 @@ pub use anthropometry::{Measurement, measurements};
 pub use articulation::{Articulation, Tongue};
 pub use calibration::{Calibration, CalibrationError};
 pub use control::{Control, Controls, Muscle};
+pub use expression::{Expression, ExpressionError, Library, Mouth, Script};
 pub use file::HeadError;
 pub use head::{ColourMap, Eye, Feature, Head, Landmark, Layer, Placement, SurfacePoint};
 pub use key_frame::{KeyFrame, TICK_RATE};

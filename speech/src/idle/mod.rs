@@ -44,8 +44,11 @@ impl Idle {
         let blink = blink::at(&self.noise, ticks, speaking);
         // Who looks down lowers the lids with the eyes.
         let lid = blink.max((-glance.pitch * LID_PER_GAZE_RAD).clamp(0.0, 0.4));
-        controls[Control::LidL] = controls[Control::LidL].max(lid);
-        controls[Control::LidR] = controls[Control::LidR].max(lid);
+        for side in [Control::LidL, Control::LidR] {
+            // Eyes that are wide open (below 0) blink from there.
+            let wide = controls[side].min(0.0);
+            controls[side] = controls[side].max(wide + (1.0 - wide) * lid);
+        }
         controls[Control::HeadYaw] += head.yaw;
         controls[Control::HeadPitch] += head.pitch;
         controls[Control::HeadRoll] += head.roll;
