@@ -17,7 +17,7 @@ use crate::export::Job;
 use crate::input::Utterance;
 use crate::media::mp4::Mp4Sink;
 use crate::media::output;
-use crate::pipeline::{Cast, Instant, Part, Performance};
+use crate::pipeline::{Cast, Instant, Mood, Part, Performance};
 
 /// Sizes that pictures are drawn at.
 const SIZES: [Size; 2] = [
@@ -154,6 +154,7 @@ fn export(cast: &Cast, utterance: Utterance) -> anyhow::Result<Value> {
         size: SIZES[0],
         fps: Fps { num: 30, den: 1 },
         look: look(TierArg::Medium),
+        mood: Mood::default(),
         seed: 1,
         bitrate: None,
     };

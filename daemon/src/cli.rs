@@ -131,13 +131,24 @@ pub struct InputArgs {
     pub label_rate: u32,
 }
 
+/// What the face shows besides what it says.
+#[derive(Clone, Debug, Default, Args)]
+pub struct MoodArgs {
+    /// Show this expression throughout: happiness, sadness, wink_left … (an unknown name lists all)
+    #[arg(long, value_name = "NAME")]
+    pub expression: Option<String>,
+    /// Lead the face through the expressions of a script, .json or .ron
+    #[arg(long, value_name = "F")]
+    pub script: Option<PathBuf>,
+}
+
 /// Offline video with sound: the same face faster than real time, the same bytes every time
 #[derive(Debug, Args)]
 #[command(
     after_help = "The kind of output goes by the name: OUT.mp4 is H.264 with Opus sound; OUT-%05d.png or a folder \
                   (OUT/) is one picture a frame; - is raw RGBA frames on standard output.\n\n\
                   Examples:\n  mouthpiece export --labels hello.phn --audio hello.wav -o hello.mp4\n  \
-                  mouthpiece export --demo --size 1280x720 --fps 29.97 -o demo.mp4\n  \
+                  mouthpiece export --demo --size 1280x720 --fps 29.97 --expression happiness -o demo.mp4\n  \
                   mouthpiece export --demo --size 640x480 -o - | ffmpeg -f rawvideo -pix_fmt rgba -s 640x480 -r 30 -i - demo.webm"
 )]
 pub struct ExportArgs {
@@ -154,6 +165,8 @@ pub struct ExportArgs {
     pub fps: Fps,
     #[command(flatten)]
     pub look: LookArgs,
+    #[command(flatten)]
+    pub mood: MoodArgs,
     #[command(flatten)]
     pub cast: CastArgs,
     /// Seed of blinks and glances: the same seed, the same video
@@ -204,6 +217,8 @@ pub struct CurvesArgs {
     #[arg(long, value_name = "N")]
     pub seed: Option<u64>,
     #[command(flatten)]
+    pub mood: MoodArgs,
+    #[command(flatten)]
     pub cast: CastArgs,
 }
 
@@ -252,6 +267,9 @@ pub struct StillArgs {
     /// The mouth of this TIMIT phone, held
     #[arg(long, value_name = "CODE", conflicts_with = "controls")]
     pub phone: Option<String>,
+    /// An expression by name: happiness, sadness, wink_left … (an unknown name lists all)
+    #[arg(long, value_name = "NAME", conflicts_with_all = ["controls", "phone"])]
+    pub expression: Option<String>,
     #[command(flatten)]
     pub look: LookArgs,
     #[command(flatten)]

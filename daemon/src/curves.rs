@@ -12,7 +12,7 @@ use crate::cli::{CurvesArgs, Fps};
 use crate::input::Utterance;
 use crate::interrupt;
 use crate::media::output;
-use crate::pipeline::{Cast, Instant, Instants, Part};
+use crate::pipeline::{Cast, Instant, Instants, Mood, Part};
 
 /// Names of what is measured, in order of the columns.
 const MEASURED: [&str; 5] = [
@@ -27,7 +27,7 @@ const MEASURED: [&str; 5] = [
 pub fn run(args: &CurvesArgs) -> anyhow::Result<()> {
     let utterance = Utterance::load(&args.input)?;
     let cast = Cast::load(args.cast.head.as_deref())?;
-    let part = Part::new(&cast, &utterance.segments, args.seed);
+    let part = Part::new(&cast, &utterance.segments, args.seed).with_mood(Mood::load(&args.mood)?);
     let rate = args.rate;
     // Both ends count: a second at 100 Hz is 101 rows.
     let rows = (0..=rate.frames(utterance.ticks)).take_while({

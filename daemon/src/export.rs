@@ -22,7 +22,7 @@ use crate::media::ffmpeg::FfmpegSink;
 use crate::media::frames::{PngSink, RawSink};
 use crate::media::mp4::Mp4Sink;
 use crate::media::{Clip, FrameSink};
-use crate::pipeline::{Cast, Instants, Part};
+use crate::pipeline::{Cast, Instants, Mood, Part};
 use encoder::Encoder;
 
 /// Everything that decides what an export looks like, apart from where it goes.
@@ -32,6 +32,7 @@ pub struct Job {
     pub size: Size,
     pub fps: Fps,
     pub look: LookArgs,
+    pub mood: Mood,
     pub seed: u64,
     pub bitrate: Option<u32>,
 }
@@ -44,6 +45,7 @@ pub fn run(args: &ExportArgs) -> anyhow::Result<()> {
         size: args.size,
         fps: args.fps,
         look: args.look.clone(),
+        mood: Mood::load(&args.mood)?,
         seed: args.seed,
         bitrate: args.bitrate,
     };
@@ -94,7 +96,8 @@ impl Job {
         bar: &ProgressBar,
     ) -> anyhow::Result<()> {
         let cast = &self.cast;
-        let part = Part::new(cast, &self.utterance.segments, Some(self.seed));
+        let part =
+            Part::new(cast, &self.utterance.segments, Some(self.seed)).with_mood(self.mood.clone());
         let (fps, frames) = (self.fps, clip.frames);
         let times = (0..frames).map(move |k| fps.ticks(k));
         let instants = Instants::start(Arc::clone(&cast.head), part, times)?;

@@ -12,8 +12,12 @@ use std::thread::JoinHandle;
 use anyhow::Context as _;
 use crossbeam::channel::{Receiver, Sender, bounded};
 use mouthpiece_phonemes::Segment;
-use mouthpiece_rig::{Controls, Head, KeyFrame, STEP_TICKS, Simulation, TICK_RATE};
+use mouthpiece_rig::{
+    Controls, Head, KeyFrame, Library, Mouth, STEP_TICKS, Script, Simulation, TICK_RATE,
+};
 use mouthpiece_speech::{Idle, Speech, Track};
+
+use crate::cli::{MoodArgs, Usage};
 
 /// The head runs this long before the first instant, so that it is settled by then.
 const PRE_ROLL_TICKS: i64 = TICK_RATE;
@@ -43,10 +47,50 @@ impl Cast {
     }
 }
 
-/// What the head is told: speech, and on top of it what a living face does.
+/// What a face shows while it speaks: one expression throughout, a script, both or neither.
+#[derive(Clone, Debug, Default)]
+pub struct Mood {
+    expression: Option<Controls>,
+    script: Option<Script>,
+}
+
+impl Mood {
+    /// As the command line has it.
+    pub fn load(args: &MoodArgs) -> anyhow::Result<Self> {
+        Ok(Self {
+            expression: args.expression.as_deref().map(expression).transpose()?,
+            script: args.script.as_deref().map(Script::read).transpose()?,
+        })
+    }
+
+    /// Lays it over what speech says at `ticks`.
+    fn show(&self, ticks: i64, mouth: impl Fn(&Controls) -> Mouth, controls: &mut Controls) {
+        if self.expression.is_none() && self.script.is_none() {
+            return;
+        }
+        let mouth = mouth(controls);
+        let scripted = self.script.as_ref().map(|script| script.controls_at(ticks));
+        for face in [&self.expression, &scripted].into_iter().flatten() {
+            controls.express(face, 1.0, mouth);
+        }
+    }
+}
+
+/// The expression of that name in the library; what is not there is wrong usage.
+pub fn expression(name: &str) -> anyhow::Result<Controls> {
+    let known = Library::built_in()?;
+    let found = known
+        .get(name)
+        .map_err(|error| Usage(format!("--expression: {error}")))?;
+    Ok(*found.controls())
+}
+
+/// What the head is told: speech, an expression over it, and on top of both what a living face does.
 #[derive(Clone)]
 pub struct Part {
     track: Track,
+    head: Arc<Head>,
+    mood: Mood,
     idle: Option<Idle>,
 }
 
@@ -55,13 +99,28 @@ impl Part {
     pub fn new(cast: &Cast, segments: &[Segment], seed: Option<u64>) -> Self {
         Self {
             track: cast.speech.track(segments),
+            head: Arc::clone(&cast.head),
+            mood: Mood::default(),
             idle: seed.map(Idle::new),
         }
+    }
+
+    /// Shows `mood` besides.
+    pub fn with_mood(self, mood: Mood) -> Self {
+        Self { mood, ..self }
     }
 
     /// The controls at `ticks`.
     pub fn controls_at(&self, ticks: i64) -> Controls {
         let mut controls = self.track.controls_at(ticks);
+        let mouth = |speech: &Controls| {
+            Mouth::of(
+                &self.head.calibration,
+                speech,
+                self.track.speaking_at(ticks),
+            )
+        };
+        self.mood.show(ticks, mouth, &mut controls);
         if let Some(idle) = &self.idle {
             idle.add(ticks, self.track.speaking_at(ticks), &mut controls);
         }

@@ -12,7 +12,7 @@ use mouthpiece_rig::{Control, Controls, KeyFrame, STEP_TICKS, Simulation, TICK_R
 
 use crate::cli::{StillArgs, Usage};
 use crate::media::{frames, output};
-use crate::pipeline::{Cast, Instant, Part, Performance};
+use crate::pipeline::{Cast, Instant, Part, Performance, expression};
 
 /// How long the tissue is given to come to rest: ten times what a vowel takes.
 const SETTLE_TICKS: i64 = TICK_RATE;
@@ -23,7 +23,13 @@ pub fn run(args: &StillArgs) -> anyhow::Result<()> {
     let frame = match (&args.phone, &args.controls) {
         (Some(code), _) => phone(&cast, code)?,
         (None, Some(text)) => settled(&cast, &controls(text)?),
-        (None, None) => settled(&cast, &Controls::default()),
+        (None, None) => settled(
+            &cast,
+            &match &args.expression {
+                Some(name) => expression(name)?,
+                None => Controls::default(),
+            },
+        ),
     };
     let gpu = Gpu::headless()?;
     let size = (args.size.width, args.size.height);
