@@ -10,6 +10,7 @@ use std::path::PathBuf;
 
 use clap::{ArgAction, Args, Parser, Subcommand, ValueEnum};
 use mouthpiece_render::{Background, Camera, Tier, View};
+use mouthpiece_rig::Anatomy;
 
 pub use head::{CalibrateArgs, FitArgs, HeadCommand, InfoArgs, LandmarksArgs};
 pub use values::{Fps, Rgb, Size};
@@ -258,6 +259,7 @@ pub struct LabelsArgs {
 #[command(
     after_help = "Examples:\n  mouthpiece still -o face.png\n  mouthpiece still --phone aa --view 34 --size 800x800 --tier high -o aa.png\n  \
                   mouthpiece still --controls '{\"jaw_rad\": 0.2, \"zygomaticus_major\": 0.8}' -o grin.png\n  \
+                  mouthpiece still --show muscles --controls '{\"zygomaticus_major\": 1}' -o muscles.png\n  \
                   mouthpiece still --phone uw --outline uw.json -o uw.png"
 )]
 pub struct StillArgs {
@@ -277,6 +279,9 @@ pub struct StillArgs {
     /// Size of the picture in pixels
     #[arg(long, value_name = "WxH", default_value = "640x480")]
     pub size: Size,
+    /// What is shown: the skin, or what lies under it
+    #[arg(long, value_enum, default_value_t = ShowArg::Skin)]
+    pub show: ShowArg,
     /// Also write where lips, lids and landmarks lie in the picture, as JSON
     ///
     /// Points are [x, y] in pixels from the upper left corner. lips.outer (the border of the red) and lips.inner
@@ -333,6 +338,31 @@ pub enum ViewArg {
     /// Half way between the two
     #[value(name = "34")]
     ThreeQuarter,
+}
+
+/// What a picture shows.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub enum ShowArg {
+    /// The face
+    Skin,
+    /// The muscles as they are contracted, on the skull
+    Muscles,
+    /// Skull, teeth and eyeballs
+    Skull,
+    /// The springs that hold the skin: to skin (blue pressed, orange stretched), bone (teal) and muscle (red)
+    Springs,
+}
+
+impl ShowArg {
+    /// What takes the skin's place.
+    pub fn anatomy(self) -> Option<Anatomy> {
+        match self {
+            Self::Skin => None,
+            Self::Muscles => Some(Anatomy::Muscles),
+            Self::Skull => Some(Anatomy::Skull),
+            Self::Springs => Some(Anatomy::Springs),
+        }
+    }
 }
 
 /// What was asked for cannot be meant: exit status 2, as for what clap finds itself.

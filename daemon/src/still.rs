@@ -7,8 +7,10 @@ use std::sync::Arc;
 
 use anyhow::Context as _;
 use mouthpiece_phonemes::{Phone, Segment};
-use mouthpiece_render::{Gpu, Offscreen};
-use mouthpiece_rig::{Control, Controls, KeyFrame, STEP_TICKS, Simulation, TICK_RATE};
+use mouthpiece_render::{Gpu, Offscreen, Shown};
+use mouthpiece_rig::{
+    Control, Controls, Head, KeyFrame, STEP_TICKS, Simulation, TICK_RATE, undressed,
+};
 
 use crate::cli::{StillArgs, Usage};
 use crate::media::{frames, output};
@@ -33,8 +35,18 @@ pub fn run(args: &StillArgs) -> anyhow::Result<()> {
     };
     let gpu = Gpu::headless()?;
     let size = (args.size.width, args.size.height);
-    let mut offscreen = Offscreen::new(&gpu, &cast.head, size, args.look.tier.into())?;
-    let view = args.look.view();
+    let mut view = args.look.view();
+    let head = match args.show.anatomy() {
+        None => Arc::clone(&cast.head),
+        Some(what) => {
+            view.shown = Shown::Anatomy;
+            Arc::new(Head {
+                parts: undressed(&cast.head, &frame, what),
+                ..Head::clone(&cast.head)
+            })
+        }
+    };
+    let mut offscreen = Offscreen::new(&gpu, &head, size, args.look.tier.into())?;
     let rgba = offscreen.render(&frame, &view)?;
     output::write(&args.output, &frames::png(rgba, size.0, size.1)?)?;
     if let Some(path) = &args.outline {

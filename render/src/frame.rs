@@ -6,10 +6,25 @@ use mouthpiece_rig::{Body, Head, KeyFrame};
 use crate::gpu_data::Frame;
 use crate::openings::Open;
 use crate::studio::{Lamp, Studio};
-use crate::view::{Background, Extent, View, srgb};
+use crate::view::{Background, Extent, Shown, View, srgb};
 
 /// Share of the picture's height that the flash square takes.
 const FLASH_SHARE: f32 = 0.25;
+
+/// No lips and no lids: light reaches teeth and eyeballs from all sides.
+const BARE: Open = Open {
+    mouth: Vec4::new(0.0, 0.0, -1e4, 1e4),
+    mouth_half_height: 1e4,
+    lids: WIDE_OPEN,
+    lids_at_rest: WIDE_OPEN,
+};
+/// As [`Open::lids`], farther from the ball's middle than its radius.
+const WIDE_OPEN: [Vec4; 4] = [
+    Vec4::new(2.0, 0.0, 0.0, 1.0),
+    Vec4::new(-2.0, 0.0, 0.0, 1.0),
+    Vec4::new(2.0, 0.0, 0.0, 1.0),
+    Vec4::new(-2.0, 0.0, 0.0, 1.0),
+];
 
 /// The uniform block of one picture.
 pub(crate) fn data(
@@ -20,6 +35,10 @@ pub(crate) fn data(
     view: &View,
     size: (u32, u32),
 ) -> Frame {
+    let open = match view.shown {
+        Shown::Face => open,
+        Shown::Anatomy => &BARE,
+    };
     let framing = extent.frame(view.camera, size);
     let studio = Studio::portrait(view.camera.yaw_rad());
     let bodies = pose.bodies(&key_frame.state).map(Mat4::from);

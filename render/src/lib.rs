@@ -42,5 +42,5 @@ pub use offscreen::{FRAMES_IN_FLIGHT, Offscreen};
 pub use renderer::Renderer;
 pub use shader::ShaderError;
 pub use tier::{Tier, UnknownTier};
-pub use view::{Background, Camera, Extent, Framing, UnknownCamera, View};
+pub use view::{Background, Camera, Extent, Framing, Shown, UnknownCamera, View};
 pub use window::{Outcome, WindowError, WindowTarget};

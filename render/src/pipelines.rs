@@ -140,6 +140,20 @@ const CLOTH: Recipe = Recipe {
     cull: None,
     ..solid("cloth")
 };
+const BONE: Recipe = Recipe {
+    vertex: "anatomy_vertex",
+    cull: None,
+    ..solid("bone")
+};
+const MUSCLE: Recipe = Recipe {
+    vertex: "anatomy_vertex",
+    ..solid("muscle")
+};
+const SPRING: Recipe = Recipe {
+    vertex: "anatomy_vertex",
+    cull: None,
+    ..solid("spring")
+};
 const BACKDROP: Recipe = Recipe {
     vertex: "backdrop_vertex",
     fragment: Some("backdrop"),
@@ -166,6 +180,13 @@ const SKIN_SHADOW: Recipe = Recipe {
     ..solid("shadow")
 };
 
+const PART_SHADOW: Recipe = Recipe {
+    vertex: "part_shadow",
+    mesh: Mesh::Part,
+    cull: None,
+    ..SKIN_SHADOW
+};
+
 /// All pipelines of one target format and sample count.
 #[derive(Debug)]
 pub(crate) struct Pipelines {
@@ -178,10 +199,14 @@ pub(crate) struct Pipelines {
     pub(crate) hair: wgpu::RenderPipeline,
     pub(crate) lash: wgpu::RenderPipeline,
     pub(crate) cloth: wgpu::RenderPipeline,
+    pub(crate) bone: wgpu::RenderPipeline,
+    pub(crate) muscle: wgpu::RenderPipeline,
+    pub(crate) spring: wgpu::RenderPipeline,
     pub(crate) backdrop: wgpu::RenderPipeline,
     pub(crate) flash: wgpu::RenderPipeline,
     pub(crate) inside: wgpu::RenderPipeline,
     pub(crate) skin_shadow: wgpu::RenderPipeline,
+    pub(crate) part_shadow: wgpu::RenderPipeline,
 }
 
 impl Pipelines {
@@ -221,10 +246,14 @@ impl Pipelines {
             hair: make(&HAIR, &mapped)?,
             lash: make(&LASH, &lit)?,
             cloth: make(&CLOTH, &lit)?,
+            bone: make(&BONE, &lit)?,
+            muscle: make(&MUSCLE, &lit)?,
+            spring: make(&SPRING, &lit)?,
             backdrop: make(&BACKDROP, &bare)?,
             flash: make(&FLASH, &bare)?,
             inside: make(&INSIDE, &bare)?,
             skin_shadow: make(&SKIN_SHADOW, &bare)?,
+            part_shadow: make(&PART_SHADOW, &bare)?,
         })
     }
 }

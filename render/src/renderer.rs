@@ -14,7 +14,7 @@ use crate::surface::SkinGeometry;
 use crate::targets::Targets;
 use crate::tier::Tier;
 use crate::upload;
-use crate::view::{Extent, View};
+use crate::view::{Extent, Shown, View};
 
 /// Buffers of one part material.
 #[derive(Debug)]
@@ -200,7 +200,7 @@ impl Renderer {
         let frame = frame::data(&self.pose, &self.extent, &open, key_frame, view, size);
         gpu.queue()
             .write_buffer(&self.frame, 0, bytemuck::bytes_of(&frame));
-        self.shadow_pass(encoder);
+        self.shadow_pass(encoder, view.shown);
         if let Some(targets) = &self.targets {
             self.picture_pass(
                 encoder,
@@ -213,15 +213,26 @@ impl Renderer {
         Ok(())
     }
 
-    /// Depth from the key lamp: the skin casts shadows; the hair's would fall on the scalp.
-    fn shadow_pass(&self, encoder: &mut wgpu::CommandEncoder) {
+    /// Depth from the key lamp: the skin casts shadows, or without it what lies beneath; the hair's would
+    /// fall on the scalp.
+    fn shadow_pass(&self, encoder: &mut wgpu::CommandEncoder, shown: Shown) {
         let mut pass = encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
             label: Some("shadow"),
             depth_stencil_attachment: Some(clear_depth(&self.shadow_map, wgpu::StoreOp::Store)),
             ..Default::default()
         });
         pass.set_bind_group(0, &self.frame_group, &[]);
-        self.draw_skin(&mut pass, &self.pipelines.skin_shadow, &self.skin_indices);
+        match shown {
+            Shown::Face => {
+                self.draw_skin(&mut pass, &self.pipelines.skin_shadow, &self.skin_indices);
+            }
+            Shown::Anatomy => {
+                pass.set_pipeline(&self.pipelines.part_shadow);
+                for (_, buffers) in self.parts.iter().filter(|(m, _)| under_skin(*m)) {
+                    draw_part(&mut pass, buffers, 1);
+                }
+            }
+        }
     }
 
     fn picture_pass(
@@ -252,23 +263,39 @@ impl Renderer {
         });
         pass.set_bind_group(0, &self.frame_group, &[]);
         pass.set_bind_group(1, &self.shadow_group, &[]);
-        for (material, buffers) in self.parts.iter().filter(|(m, _)| *m == Material::Hair) {
-            self.draw_material(&mut pass, *material, buffers);
-        }
-        pass.set_bind_group(2, &self.maps.skin, &[]);
-        self.draw_skin(&mut pass, &self.pipelines.skin, &self.skin_indices);
-        let drawn = |m: Material| m != Material::Hair && (mouth_open || !in_mouth(m));
-        for (material, buffers) in self.parts.iter().filter(|(m, _)| drawn(*m)) {
-            self.draw_material(&mut pass, *material, buffers);
-        }
-        if mouth_open && !self.skin.inside.is_empty() {
-            self.draw_skin(&mut pass, &self.pipelines.inside, &self.inside_indices);
+        match view.shown {
+            Shown::Face => self.draw_face(&mut pass, mouth_open),
+            Shown::Anatomy => {
+                for (material, buffers) in self.parts.iter().filter(|(m, _)| under_skin(*m)) {
+                    self.draw_material(&mut pass, *material, buffers);
+                }
+            }
         }
         pass.set_pipeline(&self.pipelines.backdrop);
         pass.draw(0..BACKDROP_VERTICES, 0..1);
         if view.flash {
             pass.set_pipeline(&self.pipelines.flash);
             pass.draw(0..6, 0..1);
+        }
+    }
+
+    fn draw_face(&self, pass: &mut wgpu::RenderPass<'_>, mouth_open: bool) {
+        for (material, buffers) in self.parts.iter().filter(|(m, _)| *m == Material::Hair) {
+            self.draw_material(pass, *material, buffers);
+        }
+        pass.set_bind_group(2, &self.maps.skin, &[]);
+        self.draw_skin(pass, &self.pipelines.skin, &self.skin_indices);
+        let drawn = |m: Material| {
+            !matches!(
+                m,
+                Material::Hair | Material::Bone | Material::Muscle | Material::Spring
+            ) && (mouth_open || !in_mouth(m))
+        };
+        for (material, buffers) in self.parts.iter().filter(|(m, _)| drawn(*m)) {
+            self.draw_material(pass, *material, buffers);
+        }
+        if mouth_open && !self.skin.inside.is_empty() {
+            self.draw_skin(pass, &self.pipelines.inside, &self.inside_indices);
         }
     }
 
@@ -295,7 +322,10 @@ impl Renderer {
         let (pipeline, maps, instances) = match material {
             Material::Hair => (&p.hair, Some(&self.maps.hair), 1),
             Material::Eye => (&p.eye, Some(&self.maps.eye), 1),
-            Material::Teeth | Material::Bone => (&p.teeth, None, 1),
+            Material::Teeth => (&p.teeth, None, 1),
+            Material::Bone => (&p.bone, None, 1),
+            Material::Muscle => (&p.muscle, None, 1),
+            Material::Spring => (&p.spring, None, 1),
             Material::Gums => (&p.gums, None, 1),
             Material::Tongue => (&p.tongue, None, 1),
             Material::Cavity => (&p.cavity, None, 1),
@@ -312,7 +342,10 @@ impl Renderer {
 
 /// Front to back as far as a head goes, so that what is hidden is not shaded. `Skin` is the head's
 /// own mesh: parts of that material do not occur.
-const DRAW_ORDER: [Material; 8] = [
+const DRAW_ORDER: [Material; 11] = [
+    Material::Spring,
+    Material::Muscle,
+    Material::Bone,
     Material::Hair,
     Material::Cloth,
     Material::Lash,
@@ -330,6 +363,14 @@ fn in_mouth(material: Material) -> bool {
     matches!(
         material,
         Material::Teeth | Material::Gums | Material::Tongue | Material::Cavity
+    )
+}
+
+/// Whether a part is drawn where the skin is not.
+fn under_skin(material: Material) -> bool {
+    matches!(
+        material,
+        Material::Bone | Material::Muscle | Material::Spring | Material::Teeth | Material::Eye
     )
 }
 

@@ -8,7 +8,9 @@ use thiserror::Error;
 
 /// Every shader file by its name without ending.
 const FILES: &[(&str, &str)] = &[
+    ("anatomy", include_str!("shaders/anatomy.wgsl")),
     ("background", include_str!("shaders/background.wgsl")),
+    ("bone", include_str!("shaders/bone.wgsl")),
     ("cavity", include_str!("shaders/cavity.wgsl")),
     ("cloth", include_str!("shaders/cloth.wgsl")),
     ("eye", include_str!("shaders/eye.wgsl")),
@@ -20,10 +22,12 @@ const FILES: &[(&str, &str)] = &[
     ("lash", include_str!("shaders/lash.wgsl")),
     ("light", include_str!("shaders/light.wgsl")),
     ("mouth", include_str!("shaders/mouth.wgsl")),
+    ("muscle", include_str!("shaders/muscle.wgsl")),
     ("noise", include_str!("shaders/noise.wgsl")),
     ("part", include_str!("shaders/part.wgsl")),
     ("shadow", include_str!("shaders/shadow.wgsl")),
     ("skin", include_str!("shaders/skin.wgsl")),
+    ("spring", include_str!("shaders/spring.wgsl")),
     ("teeth", include_str!("shaders/teeth.wgsl")),
     ("tongue", include_str!("shaders/tongue.wgsl")),
 ];
@@ -32,6 +36,7 @@ const FILES: &[(&str, &str)] = &[
 #[cfg(test)]
 pub(crate) const ENTRY_FILES: &[&str] = &[
     "background",
+    "bone",
     "cavity",
     "cloth",
     "eye",
@@ -40,8 +45,10 @@ pub(crate) const ENTRY_FILES: &[&str] = &[
     "hair",
     "inside",
     "lash",
+    "muscle",
     "shadow",
     "skin",
+    "spring",
     "teeth",
     "tongue",
 ];

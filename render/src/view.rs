@@ -62,6 +62,16 @@ pub enum Background {
     Studio([u8; 3]),
 }
 
+/// What of the head is drawn.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
+pub enum Shown {
+    /// The face, as everybody knows it.
+    #[default]
+    Face,
+    /// What lies under the skin: bones, teeth, eyes, and the muscles or springs among the head's parts.
+    Anatomy,
+}
+
 /// How to look at the head.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct View {
@@ -69,6 +79,8 @@ pub struct View {
     pub camera: Camera,
     /// Against what.
     pub background: Background,
+    /// What of it.
+    pub shown: Shown,
     /// Draws a large white square in the upper left corner: what a test of sound against picture
     /// looks for in its recording of the screen.
     pub flash: bool,
@@ -79,6 +91,7 @@ impl Default for View {
         Self {
             camera: Camera::Front,
             background: Background::Studio([92, 98, 104]),
+            shown: Shown::Face,
             flash: false,
         }
     }

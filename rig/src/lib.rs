@@ -2,6 +2,7 @@
 //!
 //! | module | holds |
 //! |---|---|
+//! | `anatomy` | what lies under the skin, as parts to be drawn: bones, muscles, springs |
 //! | `anthropometry` | distances between landmarks, as Farkas names them |
 //! | `articulation` | what a mouth should do, for any head |
 //! | `calibration` | an articulation turned into one head's muscles |
@@ -25,6 +26,7 @@
 //! and damping are per unit of mass. This crate knows neither phones nor pixels.
 #![forbid(unsafe_code)]
 
+mod anatomy;
 mod anthropometry;
 mod articulation;
 mod calibration;
@@ -44,6 +46,7 @@ mod subdivision;
 mod tissue;
 mod tissue_record;
 
+pub use anatomy::{Anatomy, SpringKind, SpringLine, undressed};
 pub use anthropometry::{Measurement, measurements};
 pub use articulation::{Articulation, Tongue};
 pub use calibration::{Calibration, CalibrationError};
@@ -54,7 +57,10 @@ pub use head::{ColourMap, Eye, Feature, Head, Landmark, Layer, Placement, Surfac
 pub use key_frame::{KeyFrame, TICK_RATE};
 pub use measure::{Measures, measure};
 pub use mesh::{Body, LIP_LEVELS, Lid, Lips, Material, Mesh, Part, Skin, lip_level, normals};
-pub use muscle::{Axis, Contraction, Fibre, GridPoint, MuscleGrid, Space, rebuild};
+pub use muscle::{
+    Axis, Belly, Contraction, Fibre, GridPoint, MuscleGrid, MuscleSurfaces, Space, enclosed_volume,
+    rebuild,
+};
 pub use quality::{EdgeLengths, Quality, edge_lengths};
 pub use simulation::{STEP_TICKS, Simulation};
 pub use subdivision::{

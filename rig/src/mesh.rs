@@ -62,6 +62,12 @@ pub enum Material {
     Cloth,
     /// Skull and mandible: drawn only where asked for.
     Bone,
+    /// A muscle's surface, drawn only where asked for; `uv` is the place along the fibres, 0 to 1 over the
+    /// flesh and beyond it in tendon, and the place across them, mm.
+    Muscle,
+    /// Springs as thin bars, drawn only where asked for; `uv` is which kind
+    /// ([`SpringKind`](crate::SpringKind)) and how far stretched (below 0: pressed).
+    Spring,
 }
 
 /// A triangle mesh; all per-vertex arrays have the same length.

@@ -23,6 +23,8 @@ pub(super) fn material(material: Material) -> GltfMaterial {
         Material::Hair => ("hair", [0.045, 0.028, 0.018], 0.60, true),
         Material::Lash => ("lash", [0.02, 0.013, 0.01], 0.70, true),
         Material::Cloth => ("cloth", [0.06, 0.07, 0.09], 0.90, true),
+        Material::Muscle => ("muscle", [0.30, 0.07, 0.05], 0.45, false),
+        Material::Spring => ("spring", [0.50, 0.50, 0.50], 0.90, false),
         Material::Bone => ("bone", [0.72, 0.66, 0.53], 0.70, false),
     };
     GltfMaterial {

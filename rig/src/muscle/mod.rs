@@ -8,12 +8,14 @@
 
 mod grid;
 mod merge;
+mod surface;
 mod system;
 
 use glam::{Affine3A, Vec3, vec3};
 
 pub use grid::{Axis, GridPoint, MuscleGrid, Space, rebuild};
 use merge::{Merge, merges};
+pub use surface::{Belly, MuscleSurfaces, enclosed_volume};
 pub(crate) use system::Muscles;
 
 use crate::{Control, Controls, Muscle};

@@ -63,7 +63,11 @@ pub(super) fn follow(
                 bend_normals(mesh, &places);
                 mesh.positions = places;
             }
-            Material::Eye | Material::Bone | Material::Skin => {}
+            Material::Eye
+            | Material::Bone
+            | Material::Skin
+            | Material::Muscle
+            | Material::Spring => {}
         }
     }
 }

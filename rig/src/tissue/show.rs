@@ -1,0 +1,62 @@
+//! The default model's springs as lines, to be drawn (`still --show springs`): the skin's edges, and
+//! where each node of the skin hangs on bone and on fibres. Made anew from what the model is made from, so
+//! that its own layout in memory is nobody else's business.
+
+use glam::Vec3;
+
+use super::Numbering;
+use super::anatomy::{attach, mandible_share, sides};
+use crate::anatomy::{SpringKind, SpringLine};
+use crate::muscle::{Muscles, Space, carried};
+use crate::{Control, Head, KeyFrame};
+
+/// All springs of `head` in the pose of `frame`, but those to the lids.
+pub(crate) fn spring_lines(head: &Head, frame: &KeyFrame) -> Vec<SpringLine> {
+    if frame.skin.len() != head.skin.mesh.positions.len() {
+        return Vec::new();
+    }
+    let numbering = Numbering::new(head);
+    let rest = numbering.of(&head.skin.mesh.positions);
+    let now = numbering.of(&frame.skin);
+    let mut lines = Vec::new();
+    let mut add = |kind, [a0, b0]: [Vec3; 2], [a, b]: [Vec3; 2]| {
+        let strain = a.distance(b) / a0.distance(b0).max(0.1) - 1.0;
+        lines.push(SpringLine { a, b, strain, kind });
+    };
+    for edge in &numbering.edges {
+        let ends = edge.map(|i| i as usize);
+        add(
+            SpringKind::Skin,
+            ends.map(|i| rest[i]),
+            ends.map(|i| now[i]),
+        );
+    }
+
+    let mandible = head.mandible(frame.state[Control::Jaw]);
+    let mut muscles = Muscles::new(head);
+    let fibres_rest = muscles.points().to_vec();
+    muscles.contract(head, &frame.state, &mandible);
+    let reference = numbering.of(&head.skin.reference);
+    let side = numbering.of(&sides(head));
+    let mut lid_hold = vec![0.0_f32; head.skin.mesh.positions.len()];
+    for lid in &head.lids {
+        lid_hold[lid.vertex as usize] = lid.hold;
+    }
+    let lid_hold = numbering.of(&lid_hold);
+    let bones = ["skull", "mandible"].into_iter();
+    let space = Space::new(bones.filter_map(|name| head.part(name)).map(|p| &p.mesh));
+    for i in 0..numbering.movable {
+        let (inwards, depth) = space.under(rest[i]);
+        let bone = rest[i] + inwards * depth;
+        let share = mandible_share(reference[i], side[i]);
+        let at = carried(bone, share, &mandible);
+        add(SpringKind::Bone, [rest[i], bone], [now[i], at]);
+        for hold in attach(head, i, rest[i], side[i], lid_hold[i]) {
+            let k = muscles.starts()[hold.fibre as usize] + hold.point as usize;
+            let on = |points: &[Vec3]| points[k].lerp(points[k + 1], hold.share);
+            let ends = [now[i], on(muscles.points())];
+            add(SpringKind::Muscle, [rest[i], on(&fibres_rest)], ends);
+        }
+    }
+    lines
+}
