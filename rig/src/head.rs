@@ -1,11 +1,11 @@
 //! The head as data: skin mesh, rigid parts, the bodies they hang on, and where each body is for given controls.
 
-use glam::{Affine3A, Quat, Vec2, Vec3, vec3};
+use glam::{Affine3A, Quat, Vec2, Vec3};
 use serde::{Deserialize, Serialize};
 
 use crate::mesh::{Body, Lid, Lips, Part, Skin};
 use crate::muscle::{Fibre, MuscleGrid};
-use crate::{Calibration, Control, Controls, KeyFrame, LipStencils, TissueRecord};
+use crate::{Calibration, Control, Controls, KeyFrame, LipStencils, TissueRecord, jaw, tongue};
 
 /// A place on a triangle of a mesh.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
@@ -173,7 +173,7 @@ impl Head {
         let mandible = skull * self.mandible(controls[Control::Jaw]);
         let gaze = Quat::from_rotation_y(controls[Control::GazeYaw])
             * Quat::from_rotation_x(-controls[Control::GazePitch]);
-        let tongue = self.tongue(controls);
+        let tongue = tongue::poses(self, controls);
         let mut bodies = [Affine3A::IDENTITY; Body::COUNT];
         bodies[Body::Skull as usize] = skull;
         bodies[Body::Mandible as usize] = mandible;
@@ -189,34 +189,10 @@ impl Head {
     }
 
     /// The mandible in the skull's frame: rotation about the condyles with the forward slide that
-    /// goes with it (HABER 4.1).
+    /// goes with it (HABER 4.1); an angle beyond the jaw's limits counts as the limit.
     #[must_use]
     pub fn mandible(&self, jaw_rad: f32) -> Affine3A {
-        let slide = vec3(0.0, -0.3, 1.0) * (jaw_rad * JAW_SLIDE_MM_PER_RAD);
-        Affine3A::from_translation(slide) * about(self.condyle_axis, Quat::from_rotation_x(jaw_rad))
-    }
-
-    /// Root, blade and tip of the tongue in the mandible's frame. HABER 4.1 has the tongue rigid; here
-    /// it bends along this chain. The root stays near the hyoid and takes half of the blade's motion.
-    fn tongue(&self, controls: &Controls) -> [Affine3A; 3] {
-        let (tip, out, body) = (
-            controls[Control::TongueTip],
-            controls[Control::TongueOut],
-            controls[Control::TongueBody],
-        );
-        let millimetres = |v: Vec3| Affine3A::from_translation(v * self.bite.scale);
-        let pivot = |p: Vec3, pitch: f32| about(self.bite.place(p), Quat::from_rotation_x(-pitch));
-        let lift = |share: f32| {
-            millimetres(vec3(0.0, 5.0 * body, 9.0 * out - 4.0 * body) * share)
-                * pivot(TONGUE_ROOT, 0.22 * body * share)
-        };
-        let blade = lift(1.0);
-        let raise = millimetres(vec3(0.0, 3.5 * tip, 2.0 * tip));
-        [
-            lift(0.5),
-            blade,
-            blade * raise * pivot(TONGUE_BLADE, 0.55 * tip),
-        ]
+        jaw::pose(self.condyle_axis, jaw_rad)
     }
 
     /// The head at rest, as a key frame at time 0.
@@ -266,15 +242,7 @@ impl Head {
     }
 }
 
-/// How far the condyles slide forward as the jaw opens (order of size from Vatikiotis-Bateson and
-/// Ostry: translation is linear in rotation; the figure itself is a judgement).
-const JAW_SLIDE_MM_PER_RAD: f32 = 14.0;
-
-/// What the tongue's root and its blade turn about on the reference head, mm.
-const TONGUE_ROOT: Vec3 = vec3(0.0, -46.0, 45.0);
-const TONGUE_BLADE: Vec3 = vec3(0.0, -36.0, 80.0);
-
 /// Rotation about a point.
-fn about(pivot: Vec3, rotation: Quat) -> Affine3A {
+pub(crate) fn about(pivot: Vec3, rotation: Quat) -> Affine3A {
     Affine3A::from_rotation_translation(rotation, pivot - rotation * pivot)
 }

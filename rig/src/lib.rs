@@ -15,6 +15,7 @@
 //! | `muscle` | fibres: linear and sphincter (HABER 5.1) |
 //! | `tissue_record` | which tissue a head has, and its mass |
 //! | `tissue` | the springs of the skin (HEADSHOP 4.2) |
+//! | `jaw`, `tongue` | how they move, and what stops them (HABER 4.1) |
 //! | `contact` | lips, teeth, lids and eyeballs stop each other |
 //! | `simulation` | steps all of it in time |
 //! | `key_frame` | the whole state at an instant |
@@ -35,6 +36,7 @@ mod control;
 mod expression;
 mod file;
 mod head;
+mod jaw;
 mod key_frame;
 mod measure;
 mod mesh;
@@ -45,6 +47,7 @@ mod simulation;
 mod subdivision;
 mod tissue;
 mod tissue_record;
+mod tongue;
 
 pub use anatomy::{Anatomy, SpringKind, SpringLine, undressed};
 pub use anthropometry::{Measurement, measurements};

@@ -11,7 +11,8 @@ use crate::contact::Contact;
 use crate::key_frame::TICK_RATE;
 use crate::muscle::Muscles;
 use crate::tissue::{Drive, Numbering, Springs, Tissue};
-use crate::{Control, Controls, Head, KeyFrame};
+use crate::tongue::Tongue;
+use crate::{Control, Controls, Head, KeyFrame, jaw};
 
 /// Length of a step in ticks: 480 steps a second.
 pub const STEP_TICKS: i64 = 100;
@@ -19,7 +20,6 @@ pub const STEP_TICKS: i64 = 100;
 pub(crate) const STEP_S: f32 = STEP_TICKS as f32 / TICK_RATE as f32;
 /// How fast components follow their controls (critically damped), 1/s.
 const MUSCLE_RATE: f32 = 170.0;
-const JAW_RATE: f32 = 130.0;
 const HEAD_RATE: f32 = 40.0;
 
 /// The tissue's model that a head asks for.
@@ -50,6 +50,7 @@ pub struct Simulation {
     model: Model,
     muscles: Muscles,
     contact: Contact,
+    tongue: Tongue,
     time: i64,
     epoch: u32,
     state: Controls,
@@ -71,6 +72,7 @@ impl Simulation {
             model: Model::Springs(Box::new(Springs::new(&head, &numbering))),
             muscles: Muscles::new(&head),
             contact: Contact::new(&head, &numbering),
+            tongue: Tongue::new(&head),
             numbering,
             head,
             lip_contact: true,
@@ -209,7 +211,10 @@ impl Simulation {
     fn follow(&mut self, wanted: &Controls) {
         for &control in Control::ALL {
             let rate = match control {
-                Control::Jaw => JAW_RATE,
+                // Those have limits and contacts of their own.
+                Control::Jaw | Control::TongueTip | Control::TongueOut | Control::TongueBody => {
+                    continue;
+                }
                 Control::HeadYaw | Control::HeadPitch | Control::HeadRoll => HEAD_RATE,
                 _ => MUSCLE_RATE,
             };
@@ -220,5 +225,13 @@ impl Simulation {
             self.rate[control] = v;
             self.state[control] = x + v * STEP_S;
         }
+        let (angle, speed) = jaw::step(
+            self.state[Control::Jaw],
+            self.rate[Control::Jaw],
+            wanted[Control::Jaw],
+        );
+        (self.state[Control::Jaw], self.rate[Control::Jaw]) = (angle, speed);
+        self.tongue
+            .step(&self.head, wanted, &mut self.state, &mut self.rate);
     }
 }
