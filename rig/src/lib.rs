@@ -25,7 +25,7 @@
 //!
 //! Millimetres, seconds and radians; +y up, +z out of the face, +x to the subject's left. Stiffness
 //! and damping are per unit of mass. This crate knows neither phones nor pixels.
-#![forbid(unsafe_code)]
+#![deny(unsafe_code)]
 
 mod anatomy;
 mod anthropometry;

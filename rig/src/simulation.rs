@@ -10,9 +10,9 @@ use glam::Vec3;
 use crate::contact::Contact;
 use crate::key_frame::TICK_RATE;
 use crate::muscle::Muscles;
-use crate::tissue::{Drive, Numbering, Springs, Tissue};
+use crate::tissue::{Drive, cheeks, Layered, Numbering, Springs, Tissue};
 use crate::tongue::Tongue;
-use crate::{Control, Controls, Head, KeyFrame, jaw};
+use crate::{Control, Controls, Head, KeyFrame, TissueModel, jaw};
 
 /// Length of a step in ticks: 480 steps a second.
 pub const STEP_TICKS: i64 = 100;
@@ -26,18 +26,28 @@ const HEAD_RATE: f32 = 40.0;
 #[derive(Clone, Debug)]
 enum Model {
     Springs(Box<Springs>),
+    Layered(Box<Layered>),
 }
 
 impl Model {
+    fn new(head: &Head, numbering: &Numbering) -> Self {
+        match head.tissue.model {
+            TissueModel::Springs => Self::Springs(Box::new(Springs::new(head, numbering))),
+            TissueModel::Layered => Self::Layered(Box::new(Layered::new(head, numbering))),
+        }
+    }
+
     fn tissue(&self) -> &dyn Tissue {
         match self {
             Self::Springs(springs) => springs.as_ref(),
+            Self::Layered(layered) => layered.as_ref(),
         }
     }
 
     fn tissue_mut(&mut self) -> &mut dyn Tissue {
         match self {
             Self::Springs(springs) => springs.as_mut(),
+            Self::Layered(layered) => layered.as_mut(),
         }
     }
 }
@@ -55,8 +65,11 @@ pub struct Simulation {
     epoch: u32,
     state: Controls,
     rate: Controls,
+    contacts: bool,
     lip_contact: bool,
     muscle_stiffness: f32,
+    damping: f32,
+    volume: f32,
 }
 
 impl Simulation {
@@ -69,14 +82,17 @@ impl Simulation {
             epoch: 0,
             state: Controls::default(),
             rate: Controls::default(),
-            model: Model::Springs(Box::new(Springs::new(&head, &numbering))),
+            model: Model::new(&head, &numbering),
             muscles: Muscles::new(&head),
             contact: Contact::new(&head, &numbering),
             tongue: Tongue::new(&head),
             numbering,
             head,
+            contacts: true,
             lip_contact: true,
             muscle_stiffness: 1.0,
+            damping: 1.0,
+            volume: 1.0,
         }
     }
 
@@ -124,6 +140,41 @@ impl Simulation {
         self.muscle_stiffness = scale;
     }
 
+    /// Scales the tissue's damping: at 0 what it is given stays in it.
+    pub fn set_damping(&mut self, scale: f32) {
+        self.damping = scale;
+    }
+
+    /// Scales what keeps the tissue's volume: at 0 nothing does.
+    pub fn set_volume_stiffness(&mut self, scale: f32) {
+        self.volume = scale;
+    }
+
+    /// Whether lips, teeth, lids and eyeballs stop each other at all.
+    pub fn set_contacts(&mut self, on: bool) {
+        self.contacts = on;
+    }
+
+    /// The tissue's energy per mass of a node, mm²/s², in a model that conserves it.
+    #[must_use]
+    pub fn energy(&self) -> Option<f64> {
+        self.model.tissue().energy(&self.drive())
+    }
+
+    /// Volumes of the soft tissue in the left and the right cheek, mm³. Works the regions out anew: for judging.
+    #[must_use]
+    pub fn cheek_volumes(&self) -> [f32; 2] {
+        let (jaw, nodes) = (self.state[Control::Jaw], self.model.tissue().skin());
+        let mandible = self.head.mandible(jaw);
+        cheeks(&self.head, &self.numbering).map(|c| c.volume(nodes, &mandible, jaw))
+    }
+
+    /// Bytes that a step reads and writes, but for muscles and contact.
+    #[must_use]
+    pub fn tissue_bytes(&self) -> usize {
+        self.model.tissue().bytes()
+    }
+
     /// One step towards `controls`.
     pub fn step(&mut self, controls: &Controls) {
         self.follow(&controls.clamped());
@@ -135,12 +186,28 @@ impl Simulation {
             mandible,
             muscles: &self.muscles,
             muscle_stiffness: self.muscle_stiffness,
+            damping: self.damping,
+            volume: self.volume,
         };
         let tissue = self.model.tissue_mut();
         tissue.step(&drive);
-        self.contact
-            .resolve(tissue.skin_mut(), &mandible, self.lip_contact);
+        if self.contacts {
+            self.contact
+                .resolve(tissue.skin_mut(), &mandible, &self.state, self.lip_contact);
+        }
         self.time += STEP_TICKS;
+    }
+
+    fn drive(&self) -> Drive<'_> {
+        Drive {
+            head: &self.head,
+            state: &self.state,
+            mandible: self.head.mandible(self.state[Control::Jaw]),
+            muscles: &self.muscles,
+            muscle_stiffness: self.muscle_stiffness,
+            damping: self.damping,
+            volume: self.volume,
+        }
     }
 
     /// Copies the whole state into a frame, without allocating once its buffers have grown.

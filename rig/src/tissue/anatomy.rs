@@ -9,7 +9,7 @@ use glam::Vec3;
 use crate::mesh::LIP_LEVELS;
 use crate::mesh::lip_level::CONTACT;
 use crate::mesh::ramp;
-use crate::muscle::Contraction;
+use crate::muscle::{Contraction, Space};
 use crate::{Head, Muscle};
 
 /// Stiffness per mass of a skin edge.
@@ -52,6 +52,13 @@ pub(super) fn moves(p: Vec3) -> bool {
     let ahead = p.z > 8.0 + 0.35 * (p.y + 30.0).abs().min(60.0);
     let side = if p.y > 60.0 { 66.0 } else { 75.0 };
     ahead && (-98.0..110.0).contains(&p.y) && p.x.abs() < side
+}
+
+/// Whether the skin there lies over the soft tissue of a cheek: beside nose and mouth, below the eye, above
+/// the jaw's edge, in front of the ear.
+pub(super) fn cheek(p: Vec3) -> bool {
+    let beside = p.x.abs() > 25.0 + 9.0 * ramp(-8.0, -24.0, p.y);
+    beside && p.z > 38.0 && (-58.0..16.0).contains(&p.y)
 }
 
 /// Which lip a skin vertex belongs to; off the lips' columns, by the height of the slit there.
@@ -126,6 +133,13 @@ pub(super) fn bone_stiffness(p: Vec3, side: Side) -> f32 {
     let lip = if side == Side::Neither { 1.0 } else { 0.75 };
     let held = thin.max(far) * (1.0 - 0.85 * free);
     (BONE_SOFT * lip) + (BONE_THIN - BONE_SOFT) * held * (1.0 - (1.0 - FOREHEAD) * slides)
+}
+
+/// Which way the bone under each of these places of the skin lies, and how deep, mm.
+pub(super) fn bone_depth(head: &Head, places: &[Vec3]) -> Vec<(Vec3, f32)> {
+    let bones = ["skull", "mandible"].into_iter();
+    let space = Space::new(bones.filter_map(|name| head.part(name)).map(|p| &p.mesh));
+    places.iter().map(|p| space.under(*p)).collect()
 }
 
 /// The springs of one vertex to the fibres near it.

@@ -5,11 +5,15 @@
 //! | `nodes` | places and velocities, and which skin vertices they are |
 //! | `anatomy` | how thick and fast the tissue is, as functions of a place on the reference head |
 //! | `show` | the default model's springs as lines, for pictures |
+//! | `cheeks` | the volume of each cheek |
+//! | `layered` | LEE 4 to 8: epidermis, fascia and skull in prisms |
 //! | `springs` | HEADSHOP 4.2: skin edges, springs to bone and muscle (the default) |
 //!
 //! Contact is not here: it corrects the skin's nodes after each step, whatever the model.
 
 mod anatomy;
+mod cheeks;
+mod layered;
 mod nodes;
 mod show;
 mod springs;
@@ -18,6 +22,8 @@ use std::fmt::Debug;
 
 use glam::Affine3A;
 
+pub(crate) use cheeks::cheeks;
+pub(crate) use layered::Layered;
 pub(crate) use nodes::{Nodes, Numbering};
 pub(crate) use show::spring_lines;
 pub(crate) use springs::Springs;
@@ -37,6 +43,10 @@ pub(crate) struct Drive<'a> {
     pub muscles: &'a Muscles,
     /// Scales everything that muscles do to tissue; at 0 no contraction moves skin.
     pub muscle_stiffness: f32,
+    /// Scales the damping; at 0 energy stays.
+    pub damping: f32,
+    /// Scales what keeps the tissue's volume.
+    pub volume: f32,
 }
 
 /// A model of soft tissue. Its nodes begin with those of the skin that move, in the order of the
@@ -56,4 +66,10 @@ pub(crate) trait Tissue: Debug {
     fn reset_inner(&mut self);
     /// Springs of all kinds.
     fn spring_count(&self) -> usize;
+    /// Energy per mass, mm²/s², of a model that conserves it.
+    fn energy(&self, _drive: &Drive<'_>) -> Option<f64> {
+        None
+    }
+    /// Bytes of what a step reads and writes.
+    fn bytes(&self) -> usize;
 }

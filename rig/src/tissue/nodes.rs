@@ -35,6 +35,8 @@ pub(crate) struct Numbering {
     number: Vec<u32>,
     /// Edges between nodes of which one at least moves: the lower number first, in order, each once.
     pub edges: Vec<[u32; 2]>,
+    /// Triangles of which one corner at least moves, by node.
+    pub triangles: Vec<[u32; 3]>,
 }
 
 impl Numbering {
@@ -49,7 +51,7 @@ impl Numbering {
         for (new, &old) in vertices.iter().enumerate() {
             number[old as usize] = new as u32;
         }
-        let mut edges = Vec::new();
+        let (mut edges, mut triangles) = (Vec::new(), Vec::new());
         for t in &head.skin.mesh.triangles {
             if t.iter().all(|&v| number[v as usize] as usize >= movable) {
                 continue;
@@ -60,8 +62,10 @@ impl Numbering {
                     vertices.push(v);
                 }
             }
+            let t = t.map(|v| number[v as usize]);
+            triangles.push(t);
             for i in 0..3 {
-                let (a, b) = (number[t[i] as usize], number[t[(i + 1) % 3] as usize]);
+                let (a, b) = (t[i], t[(i + 1) % 3]);
                 if (a.min(b) as usize) < movable {
                     edges.push([a.min(b), a.max(b)]);
                 }
@@ -74,6 +78,7 @@ impl Numbering {
             movable,
             number,
             edges,
+            triangles,
         }
     }
 

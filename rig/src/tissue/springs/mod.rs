@@ -1,42 +1,67 @@
 //! Skin as a mass-spring mesh on muscles and skull (HEADSHOP 4.2, HABER 5.3): the default model.
 //!
-//! Edges of the skin mesh are springs; every vertex has springs to the bone under it (skull or
-//! mandible, by a share), those near a muscle have springs to its fibres, those at the lids to the
-//! lids. Integrated by Verlet leapfrog with damping per mass.
+//! - Edges of the skin mesh are springs. Pressed together they go slack rather than buckle.
+//! - Every node has a spring to the bone under it (skull or mandible, by a share), in two phases as LEE 4
+//!   has its dermal-fatty springs, and the bone stops it; a node near muscles has springs to their fibres, one
+//!   on a lid a spring to the lid.
+//! - The cheeks keep their volume (see `cheeks`).
+//!
+//! All of it are forces in one set of equations of motion, integrated by Verlet leapfrog with damping
+//! per mass. All nodes have the same mass: on a mesh graded to 1 mm at the lips, masses by area
+//! would force steps five times shorter. Nodes outside the face are fixed (`anatomy::moves`).
+//!
+//! | module | holds |
+//! |---|---|
+//! | `ring` | neighbours in their order round a node |
+//! | `lids` | what turns the lids |
+//! | `energy` | the energy of it all, for tests |
+//! | `simd` | the passes over all springs |
 
-use glam::{Quat, Vec3A};
+mod energy;
+mod lids;
+mod ring;
+pub(super) mod simd;
 
-use super::anatomy::{Attachment, EDGE, LID, attach, bone_stiffness, mandible_share, sides};
+use glam::{Affine3A, Vec3A};
+
+use super::anatomy::{EDGE, attach, bone_depth, bone_stiffness, mandible_share, sides};
+use super::cheeks::{Cheek, cheeks};
 use super::{Drive, Nodes, Numbering, Tissue};
 use crate::simulation::STEP_S;
-use crate::{Control, Head, Muscle};
+use crate::{Control, Head, TissueRecord};
+use lids::Lids;
+use simd::{Ground, Hold, Isa, Kick, Mesh};
 
 /// Damping per mass, 1/s: a little over critical for a vertex on its muscle.
 const DAMPING: f32 = 420.0;
-/// Share of its stiffness that a skin edge keeps when it is pressed together: skin goes slack rather
-/// than buckle.
+/// Share of its stiffness that a skin edge keeps when it is pressed together.
 const SLACK: f32 = 0.12;
-/// The lids aim past each other by this factor, since the skin round them holds them back.
-const LID_OVERSHOOT: f32 = 1.22;
+/// What the spring to the bone gains in its second phase, and where that begins: at a share of the
+/// tissue's depth over a least way, mm.
+const FIRM: f32 = 4_000.0;
+const SLIP_MM: f32 = 9.0;
+const SLIP_PER_DEPTH: f32 = 0.5;
+/// Of the bone that stops a node, and the share of the tissue's depth that it may be pressed by.
+const STOP: f32 = 60_000.0;
+const YIELD: f32 = 0.85;
+/// Of a cheek's volume, 1/s² and per mm².
+const VOLUME: f32 = 200_000.0;
 
 /// The springs of a head, and the skin's nodes.
 #[derive(Clone, Debug)]
 pub(crate) struct Springs {
+    isa: Isa,
     movable: usize,
+    /// Padded to whole blocks by nodes that nothing moves.
     nodes: Nodes,
-    rest: Vec<Vec3A>,
-    force: Vec<Vec3A>,
-    edges: Vec<[u32; 2]>,
-    rest_mm: Vec<f32>,
-    /// Per movable vertex: stiffness to the bone, skull and mandible together.
-    bone: Vec<f32>,
-    /// Vertices that the mandible takes along, with its share of that stiffness.
-    jawed: Vec<(u32, f32)>,
-    /// By fibre, and where each fibre's start among them.
-    attachments: Vec<Attachment>,
-    fibres: Vec<u32>,
-    /// `(simulated vertex, index into Head::lids, stiffness)`.
-    lids: Vec<(u32, u32, f32)>,
+    mesh: Mesh,
+    lids: Lids,
+    cheeks: [Cheek; 2],
+    /// How a cheek's volume changes with its nodes.
+    gradient: Vec<Vec3A>,
+    /// What the stiffnesses are multiplied by: they are given for the default mass.
+    per_mass: f32,
+    springs: usize,
 }
 
 impl Springs {
@@ -44,136 +69,132 @@ impl Springs {
         let rest = numbering.of(&head.skin.mesh.positions);
         let reference = numbering.of(&head.skin.reference);
         let side = numbering.of(&sides(head));
-        let movable = numbering.movable;
+        let depth = bone_depth(head, &rest[..numbering.movable]);
+        let ground: Vec<Ground> = (0..numbering.movable)
+            .map(|i| {
+                let (inwards, depth_mm) = depth[i];
+                Ground {
+                    rest: rest[i],
+                    soft: bone_stiffness(reference[i], side[i]),
+                    firm: FIRM,
+                    slip_mm: SLIP_MM + SLIP_PER_DEPTH * depth_mm,
+                    normal: -inwards,
+                    gap_mm: YIELD * depth_mm,
+                    share: mandible_share(reference[i], side[i]),
+                }
+            })
+            .collect();
+        let mut starts = vec![0];
+        for fibre in &head.fibres {
+            starts.push(starts[starts.len() - 1] + fibre.points.len() as u32);
+        }
         let mut lid_hold = vec![0.0_f32; head.skin.mesh.positions.len()];
         for lid in &head.lids {
             lid_hold[lid.vertex as usize] = lid.hold;
         }
         let lid_hold = numbering.of(&lid_hold);
-        let mut attachments: Vec<Attachment> = (0..movable)
+        let holds: Vec<Hold> = (0..numbering.movable)
             .flat_map(|i| attach(head, i, rest[i], side[i], lid_hold[i]))
-            .collect();
-        attachments.sort_by_key(|a| a.fibre);
-        let fibres = (0..=head.fibres.len() as u32)
-            .map(|k| attachments.partition_point(|a| a.fibre < k) as u32)
-            .collect();
-        let lids = (0..)
-            .zip(&head.lids)
-            .filter_map(|(k, lid)| {
-                let node = numbering.moving(lid.vertex)?;
-                Some((node, k, LID * lid.hold * lid.hold))
+            .map(|a| Hold {
+                node: a.vertex,
+                fibre: a.fibre,
+                point: starts[a.fibre as usize] + a.point,
+                share: a.share,
+                stiffness: a.stiffness,
             })
             .collect();
-        let bone: Vec<f32> = (0..movable)
-            .map(|i| bone_stiffness(reference[i], side[i]))
+        let cheeks = cheeks(head, numbering);
+        let mut counted: Vec<[u32; 3]> = cheeks
+            .iter()
+            .flat_map(|c| c.triangles.iter().copied())
             .collect();
-        let jawed = (0..movable)
-            .map(|i| (i as u32, bone[i] * mandible_share(reference[i], side[i])))
-            .filter(|(_, stiffness)| *stiffness > 0.0)
-            .collect();
+        counted.sort_unstable();
+        let length = |a: u32, b: u32| rest[a as usize].distance(rest[b as usize]);
+        let neighbours = ring::rings(numbering, length, &counted);
+        let points = starts[head.fibres.len()] as usize;
+        let mesh = Mesh::new(&ground, &neighbours, &holds, rest.len(), points);
+        let lids = Lids::new(head, numbering);
+        let mut nodes = Nodes::at(&rest);
+        nodes.place.resize(mesh.nodes(), Vec3A::ZERO);
+        nodes.velocity.resize(mesh.nodes(), Vec3A::ZERO);
         Self {
-            movable,
-            nodes: Nodes::at(&rest),
-            force: vec![Vec3A::ZERO; rest.len()],
-            rest_mm: numbering
-                .edges
-                .iter()
-                .map(|[a, b]| rest[*a as usize].distance(rest[*b as usize]))
-                .collect(),
-            rest: rest.into_iter().map(Vec3A::from).collect(),
-            edges: numbering.edges.clone(),
-            bone,
-            jawed,
-            attachments,
-            fibres,
+            isa: Isa::best(),
+            movable: numbering.movable,
+            gradient: vec![Vec3A::ZERO; mesh.gradients()],
+            springs: numbering.edges.len() + ground.len() + holds.len() + lids.len(),
+            per_mass: TissueRecord::default().vertex_mass_g / head.tissue.vertex_mass_g,
+            nodes,
+            mesh,
             lids,
+            cheeks,
         }
     }
 
-    /// Forces of the springs to bone, muscles and lids.
-    fn pull(&mut self, drive: &Drive<'_>) {
-        self.force.fill(Vec3A::ZERO);
-        for i in 0..self.movable {
-            self.force[i] = (self.rest[i] - self.nodes.place[i]) * self.bone[i];
+    fn kick(&self, drive: &Drive<'_>) -> Kick {
+        let mut carry = drive.mandible;
+        carry.matrix3 -= Affine3A::IDENTITY.matrix3;
+        Kick {
+            step: STEP_S * self.per_mass,
+            keep: (-DAMPING * drive.damping * STEP_S).exp(),
+            edge: EDGE,
+            slack: SLACK,
+            bone: STOP,
+            muscle: drive.muscle_stiffness,
+            carry,
+            moved: drive.muscles.moved_bits(),
         }
-        for &(i, stiffness) in &self.jawed {
-            let rest = self.rest[i as usize];
-            self.force[i as usize] += (drive.mandible.transform_point3a(rest) - rest) * stiffness;
-        }
-        let scale = drive.muscle_stiffness;
-        for (k, range) in self.fibres.windows(2).enumerate() {
-            if !drive.muscles.moved(k) && scale == 1.0 {
-                for a in &self.attachments[range[0] as usize..range[1] as usize] {
-                    let i = a.vertex as usize;
-                    self.force[i] += (self.rest[i] - self.nodes.place[i]) * a.stiffness;
+    }
+
+    /// Presses the cheeks back to their volume.
+    fn press(&mut self, drive: &Drive<'_>, kick: &Kick) {
+        let jaw = drive.state[Control::Jaw];
+        for cheek in &self.cheeks {
+            // Three times the cones over the skin: each triangle is met at its three corners.
+            let mut skin = 0.0;
+            for &i in &cheek.nodes {
+                let i = i as usize;
+                if let Some(g) = self.mesh.gradient_of(i) {
+                    skin += self.nodes.place[i].dot(self.gradient[g]);
                 }
-                continue;
             }
-            let start = drive.muscles.starts()[k];
-            for a in &self.attachments[range[0] as usize..range[1] as usize] {
-                let i = a.vertex as usize;
-                let j = start + a.point as usize;
-                let shift = drive.muscles.shift()[j].lerp(drive.muscles.shift()[j + 1], a.share);
-                self.force[i] +=
-                    (self.rest[i] + shift - self.nodes.place[i]) * (a.stiffness * scale);
+            let (mesh, gradient) = (&self.mesh, &mut self.gradient);
+            let walls = cheek.walls(&self.nodes, &drive.mandible, |node, change| {
+                if let Some(g) = mesh.gradient_of(node as usize) {
+                    gradient[g] += change;
+                }
+            });
+            let volume = skin / 3.0 + walls + cheek.of_bone(jaw);
+            let excess = (volume - cheek.rest) / cheek.rest.max(1.0);
+            let push = -VOLUME * drive.volume * excess * kick.step * kick.keep;
+            for &i in &cheek.nodes {
+                let i = i as usize;
+                if let Some(g) = self.mesh.gradient_of(i) {
+                    self.nodes.velocity[i] += self.gradient[g] * push;
+                }
             }
-        }
-        for &(i, k, stiffness) in &self.lids {
-            let lid = drive.head.lids[k as usize];
-            let (eye, closed) = if lid.left {
-                (&drive.head.eyes[0], drive.state[Control::LidL])
-            } else {
-                (&drive.head.eyes[1], drive.state[Control::LidR])
-            };
-            // The orbicularis oculi's part in the lids closes what they have left open.
-            let muscle = drive
-                .state
-                .contraction(Muscle::OrbicularisOculiPalpebral, lid.left)
-                * scale.min(1.0);
-            let closed = 1.0 - (1.0 - closed) * (1.0 - muscle);
-            // The upper lid follows the gaze down and up.
-            let follow = if lid.turn < 0.0 {
-                0.55 * lid.hold * (1.0 - closed)
-            } else {
-                0.0
-            };
-            let gaze = follow * drive.state[Control::GazePitch];
-            let turn = Quat::from_rotation_x(-(lid.turn * closed * LID_OVERSHOOT + gaze));
-            let i = i as usize;
-            let centre = Vec3A::from(eye.centre);
-            let target = centre + turn.mul_vec3a(self.rest[i] - centre);
-            self.force[i] += (target - self.nodes.place[i]) * stiffness;
-        }
-    }
-
-    /// Forces of the skin's own springs.
-    fn stretch(&mut self) {
-        for ([a, b], rest_mm) in self.edges.iter().zip(&self.rest_mm) {
-            let (a, b) = (*a as usize, *b as usize);
-            let d = self.nodes.place[b] - self.nodes.place[a];
-            let strain = 1.0 - rest_mm / d.length_squared().max(1e-8).sqrt();
-            let pull = d * (EDGE * strain.max(SLACK * strain));
-            self.force[a] += pull;
-            self.force[b] -= pull;
-        }
-    }
-
-    /// Leapfrog: velocities at the half step, then positions; the rim stays.
-    fn integrate(&mut self) {
-        let damp = (-DAMPING * STEP_S).exp();
-        for i in 0..self.movable {
-            let velocity = (self.nodes.velocity[i] + self.force[i] * STEP_S) * damp;
-            self.nodes.velocity[i] = velocity;
-            self.nodes.place[i] += velocity * STEP_S;
         }
     }
 }
 
 impl Tissue for Springs {
     fn step(&mut self, drive: &Drive<'_>) {
-        self.pull(drive);
-        self.stretch();
-        self.integrate();
+        let kick = self.kick(drive);
+        simd::kick(
+            self.isa,
+            &self.mesh,
+            &mut self.nodes,
+            drive.muscles.shift(),
+            &mut self.gradient,
+            &kick,
+        );
+        let Nodes { place, velocity } = &mut self.nodes;
+        self.lids.pull(drive, |i, target, stiffness| {
+            velocity[i] += (target - place[i]) * (stiffness * kick.step * kick.keep);
+        });
+        if drive.volume > 0.0 {
+            self.press(drive, &kick);
+        }
+        simd::drift(self.isa, &mut self.nodes, STEP_S);
     }
 
     fn skin(&self) -> &Nodes {
@@ -195,6 +216,14 @@ impl Tissue for Springs {
     fn reset_inner(&mut self) {}
 
     fn spring_count(&self) -> usize {
-        self.edges.len() + self.movable + self.attachments.len() + self.lids.len()
+        self.springs
+    }
+
+    fn energy(&self, drive: &Drive<'_>) -> Option<f64> {
+        Some(self.energy_now(drive))
+    }
+
+    fn bytes(&self) -> usize {
+        2 * size_of_val(&*self.nodes.place) + self.mesh.bytes()
     }
 }

@@ -1,0 +1,115 @@
+//! The passes over all springs, on as many lanes as the processor has; the only unsafe code of the crate.
+//!
+//! Why unsafe: neighbours are fetched without a check of bounds (the indices are checked once, when
+//! [`Mesh`] is made, and cannot change after), and vector instructions of x86-64 may only run where the
+//! processor has them (asked once, by [`Isa::best`]). One kernel is written over the trait [`Lanes`] and
+//! compiled three times: for AVX-512, for AVX2 with FMA, and for any machine.
+//!
+//! | module | holds |
+//! |---|---|
+//! | `mesh` | nodes in blocks of 16, the springs of a block in rows |
+//! | `kernel` | springs to velocities, velocities to places |
+//! | `lanes` | what the kernel asks of a vector |
+//! | `avx512`, `avx2`, `portable` | the vectors |
+#![allow(
+    unsafe_code,
+    reason = "unchecked fetches and vector instructions, see above"
+)]
+
+#[cfg(target_arch = "x86_64")]
+mod avx2;
+#[cfg(target_arch = "x86_64")]
+mod avx512;
+mod kernel;
+mod lanes;
+mod mesh;
+mod portable;
+
+use glam::Vec3A;
+pub(super) use kernel::Kick;
+pub(super) use mesh::{Ground, Hold, Mesh, Neighbour};
+
+use crate::tissue::Nodes;
+
+/// Which instructions the passes use.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Isa {
+    /// What every processor of the target has.
+    Portable,
+    /// AVX2 with FMA, 8 lanes.
+    Avx2,
+    /// AVX-512F, 16 lanes.
+    Avx512,
+}
+
+impl Isa {
+    /// The widest that this processor has.
+    #[must_use]
+    pub fn best() -> Self {
+        Self::all()[0]
+    }
+
+    /// All that this processor has, the widest first.
+    #[must_use]
+    pub fn all() -> Vec<Self> {
+        let mut all = Vec::new();
+        #[cfg(target_arch = "x86_64")]
+        {
+            if is_x86_feature_detected!("avx512f") {
+                all.push(Self::Avx512);
+            }
+            if is_x86_feature_detected!("avx2") && is_x86_feature_detected!("fma") {
+                all.push(Self::Avx2);
+            }
+        }
+        all.push(Self::Portable);
+        all
+    }
+}
+
+/// Runs `$kernel::<L>($($arg),*)` on the lanes of an [`Isa`].
+macro_rules! on {
+    ($isa:expr, $kernel:ident($($arg:expr),*)) => {
+        match $isa {
+            // SAFETY: an `Isa` other than the portable one is only ever made by `Isa::all`, where the
+            // processor has it.
+            #[cfg(target_arch = "x86_64")]
+            Isa::Avx512 => unsafe { avx512::$kernel($($arg),*) },
+            #[cfg(target_arch = "x86_64")]
+            // SAFETY: as above.
+            Isa::Avx2 => unsafe { avx2::$kernel($($arg),*) },
+            _ => kernel::$kernel::<portable::Four>($($arg),*),
+        }
+    };
+}
+
+/// Velocities after the forces of a step, and per volume row the gradient of the volume.
+///
+/// # Panics
+/// When `nodes`, `shift` or `gradient` are not of the size that `mesh` was made for.
+pub(super) fn kick(
+    isa: Isa,
+    mesh: &Mesh,
+    nodes: &mut Nodes,
+    shift: &[Vec3A],
+    gradient: &mut [Vec3A],
+    kick: &Kick,
+) {
+    mesh.check(nodes, shift.len(), gradient.len());
+    on!(isa, kick(mesh, nodes, shift, gradient, kick));
+}
+
+/// Places after a step with these velocities.
+pub(super) fn drift(isa: Isa, nodes: &mut Nodes, step_s: f32) {
+    on!(isa, drift(nodes, step_s));
+}
+
+/// Forces of the edges alone, for measuring.
+///
+/// # Panics
+/// When `nodes` or `force` are not of the size that `mesh` was made for.
+pub(super) fn stretch(isa: Isa, mesh: &Mesh, nodes: &Nodes, force: &mut [Vec3A]) {
+    mesh.check(nodes, mesh.points(), mesh.gradients());
+    assert_eq!(force.len(), nodes.place.len(), "one force per node");
+    on!(isa, stretch(mesh, nodes, force));
+}
