@@ -3,6 +3,7 @@
 //! | module | guards |
 //! |---|---|
 //! | `mouth` | what a viewer sees: lips meet in /p b m/, the mouth opens in open vowels |
+//! | `expression` | faces over speech, scripts of them |
 //! | `export` | videos: in step, the same every time, whole or not there |
 //! | `head` | head files: spoken with, looked at, refused |
 //! | `head_fit` | scans made heads, and what is no scan refused |
@@ -22,6 +23,7 @@
 )]
 
 mod export;
+mod expression;
 mod graphics;
 mod head;
 mod head_fit;

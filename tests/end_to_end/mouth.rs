@@ -10,9 +10,9 @@ use mouthpiece_tests::curves::Table;
 use mouthpiece_tests::fixtures::{self, Label, Utterance};
 
 /// Rows a second: three simulation steps a row, so that no closure slips between two.
-const RATE_HZ: f64 = 200.0;
+pub(crate) const RATE_HZ: f64 = 200.0;
 /// Lips that are this near count as closed: less than a pixel of the default video.
-const CLOSED_MM: f64 = 0.3;
+pub(crate) const CLOSED_MM: f64 = 0.3;
 /// An open vowel opens the mouth by more than this.
 const OPEN_MM: f64 = 6.0;
 /// Vowels shorter than this may be swallowed, as in speech.
@@ -25,7 +25,7 @@ const REST_MM_MAX: f64 = 2.0;
 const HEADING: &str = "      utterance     from  lasts  phone in context  aperture";
 
 /// Segments that close the lips: the hold, or the whole stop where its hold is not labelled.
-fn closes(labels: &[Label], index: usize) -> bool {
+pub(crate) fn closes(labels: &[Label], index: usize) -> bool {
     let before = index.checked_sub(1).map(|i| labels[i].phone.as_str());
     match labels[index].phone.as_str() {
         "pcl" | "bcl" | "m" | "em" => true,
