@@ -1,71 +1,545 @@
-//! Where muscles merge: a linear muscle's insertion takes a sphincter's points along (HABER 5.1).
+//! Where muscles merge: nodes that they share, joined by springs along the muscles (HABER 5.1).
+//!
+//! Along each sphincter lie nodes; both halves of the orbicularis oris share those at the corners of the
+//! mouth, and there the muscles of the corner end as well: that is the modiolus. A node first goes to the
+//! mean of where its muscles would be each alone, weighted by how hard they work; then springs along the
+//! sphincters, as long as these alone would be, even out the rest in a few iterations, and what came of it
+//! is handed back to the fibres. Nothing is remembered from step to step, nothing allocated.
 
-use super::{Contraction, Fibre};
+use std::ops::Range;
+
+use glam::{Affine3A, Mat3, Vec3};
+
+use super::{Contraction, Fibre, carried, chord, length, straighten};
 use crate::Muscle;
 
-/// A control point of a sphincter that a linear muscle's insertion takes along.
+/// A linear muscle merges into a sphincter within this distance of its insertion, mm.
+const REACH_MM: f32 = 17.0;
+/// Springs along half of the orbicularis oris, and round the orbicularis oculi: few, so that the
+/// iterations reach from a corner of the mouth to the middle.
+const SPANS_OPEN: usize = 6;
+const SPANS_CLOSED: usize = 8;
+/// HABER: three or four are enough, and they depend on the longest way among the nodes (here 3 springs).
+const ITERATIONS: usize = 4;
+/// How much a relaxed muscle counts at a node beside one that works fully (1 more).
+const IDLE: f32 = 0.12;
+/// How much more a linear muscle counts that works fully than a sphincter that does: it is the stronger.
+const STRONGER: f32 = 2.2;
+/// What a linear muscle counts across its own direction, against along it: it draws, and does not steer.
+const ACROSS: f32 = 0.15;
+/// Stiffness of a spring along a relaxed sphincter, and what full work adds.
+const SPRING: f32 = 0.35;
+const SPRING_WORK: f32 = 0.5;
+/// Share of a spring that resists turning; the rest resists only another length.
+const UNTURNED: f32 = 0.5;
+/// The muscles never draw a modiolus farther than this, mm (a full smile moves it by some 12).
+const MODIOLUS_MAX_MM: f32 = 13.0;
+
+/// A place on a fibre: between a control point, by its number among all, and the next.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Merge {
-    /// The sphincter's fibre and point.
-    pub fibre: usize,
-    pub point: usize,
-    /// The linear fibre that inserts there, and the share of its pull that arrives.
-    pub puller: usize,
-    pub share: f32,
+struct Place {
+    point: u32,
+    share: f32,
 }
 
-/// A linear muscle takes the sphincter's points within this distance of its insertion along, mm.
-const MERGE_REACH_MM: f32 = 17.0;
+impl Place {
+    fn on(self, points: &[Vec3]) -> Vec3 {
+        let i = self.point as usize;
+        points[i].lerp(points[i + 1], self.share)
+    }
+}
 
-/// Where linear muscles merge into a sphincter. Raisers of the upper lip do not reach the lower half of
-/// the orbicularis oris, depressors of the lower lip not the upper one; what moves the brows merges
-/// into the orbital part of the orbicularis oculi.
-pub(crate) fn merges(fibres: &[Fibre]) -> Vec<Merge> {
-    let mut merges = Vec::new();
-    for (f, sphincter) in fibres.iter().enumerate() {
-        if !matches!(sphincter.contraction, Contraction::Sphincter { .. }) {
-            continue;
-        }
-        for (p, place) in sphincter.points.iter().enumerate() {
-            let start = merges.len();
-            for (l, linear) in fibres.iter().enumerate() {
-                let apart = !merge_into(linear.muscle, sphincter.muscle);
-                let Some(&insertion) = linear.points.last() else {
-                    continue;
-                };
-                let near = 1.0 - insertion.distance(*place) / MERGE_REACH_MM;
-                if linear.contraction == Contraction::Linear && !apart && near > 0.0 {
-                    merges.push(Merge {
-                        fibre: f,
-                        point: p,
-                        puller: l,
-                        share: near.sqrt(),
-                    });
+/// Where muscles are joined.
+#[derive(Clone, Debug)]
+struct Node {
+    rest: Vec3,
+    mandible: f32,
+    bounded: bool,
+}
+
+/// A place along nodes: from `a` a share of the way to `b`.
+#[derive(Clone, Copy, Debug)]
+struct Along {
+    a: u32,
+    b: u32,
+    share: f32,
+}
+
+/// A sphincter, or half of one.
+#[derive(Clone, Debug)]
+struct Ring {
+    fibres: Range<usize>,
+    /// Its nodes in order, and at each the places on its fibres.
+    nodes: Vec<u32>,
+    places: Vec<Vec<Place>>,
+    closed: bool,
+    /// Per control point of its fibres: where along its nodes.
+    along: Vec<(u32, Along)>,
+}
+
+/// A linear fibre's insertion.
+#[derive(Clone, Debug)]
+struct Tie {
+    fibre: usize,
+    along: Along,
+    /// Weight at the nodes by direction, and how firmly the fibre follows them.
+    weight: Mat3,
+    hold: f32,
+    /// Share of the way from its origin of each of its points.
+    shares: Vec<f32>,
+}
+
+/// Muscles that are joined by nodes.
+#[derive(Clone, Debug)]
+pub(crate) struct Joined {
+    nodes: Vec<Node>,
+    rings: Vec<Ring>,
+    ties: Vec<Tie>,
+    /// Scratch, per node: displacement, the next one, summed weights and pulls.
+    now: Vec<Vec3>,
+    next: Vec<Vec3>,
+    weight: Vec<Mat3>,
+    stiffness: Vec<f32>,
+    solve: Vec<Mat3>,
+    pull: Vec<Vec3>,
+    /// Scratch: per ring and node of it, the ring's own displacement.
+    own: Vec<Vec3>,
+}
+
+impl Joined {
+    /// All groups of joined muscles among `fibres`; `starts` says where each one's points begin.
+    pub(crate) fn find(fibres: &[Fibre], starts: &[usize]) -> Vec<Self> {
+        let mut groups: Vec<Self> = Vec::new();
+        let mut first = 0;
+        while first < fibres.len() {
+            let muscle = fibres[first].muscle;
+            let left = |f: &Fibre| f.points.iter().map(|p| p.x).sum::<f32>() > 0.0;
+            let whole = |m| {
+                matches!(
+                    m,
+                    Muscle::OrbicularisOrisSuperior | Muscle::OrbicularisOrisInferior
+                )
+            };
+            let alike = |f: &Fibre| {
+                f.muscle == muscle && (whole(muscle) || left(f) == left(&fibres[first]))
+            };
+            let count = fibres[first..].iter().take_while(|f| alike(f)).count();
+            let range = first..first + count;
+            first += count;
+            let round = matches!(
+                fibres[range.start].contraction,
+                Contraction::Sphincter { .. }
+            );
+            // The part of the orbicularis oculi in the lids works alone.
+            if !round || muscle == Muscle::OrbicularisOculiPalpebral {
+                continue;
+            }
+            let mouth = whole(muscle);
+            let other = groups
+                .iter_mut()
+                .find(|g| mouth && g.rings.iter().any(|r| whole(fibres[r.fibres.start].muscle)));
+            match other {
+                Some(group) => group.add_ring(fibres, starts, range),
+                None => {
+                    let mut group = Self::empty();
+                    group.add_ring(fibres, starts, range);
+                    groups.push(group);
                 }
             }
-            // Fibres of one muscle share the point: together they pull no harder than one.
-            for i in start..merges.len() {
-                let muscle = fibres[merges[i].puller].muscle;
-                let alike: f32 = merges[start..]
-                    .iter()
-                    .filter(|m| fibres[m.puller].muscle == muscle)
-                    .map(|m| m.share)
-                    .sum();
-                merges[i].share *= merges[i].share / alike.max(1.0);
-            }
+        }
+        for group in &mut groups {
+            group.tie(fibres);
+            let count = group.nodes.len();
+            group.now = vec![Vec3::ZERO; count];
+            group.next = group.now.clone();
+            group.pull = group.now.clone();
+            group.weight = vec![Mat3::ZERO; count];
+            group.solve = group.weight.clone();
+            group.stiffness = vec![0.0; count];
+            group.own = vec![Vec3::ZERO; group.rings.iter().map(|r| r.nodes.len()).sum()];
+        }
+        groups
+    }
+
+    fn empty() -> Self {
+        Self {
+            nodes: Vec::new(),
+            rings: Vec::new(),
+            ties: Vec::new(),
+            now: Vec::new(),
+            next: Vec::new(),
+            weight: Vec::new(),
+            stiffness: Vec::new(),
+            solve: Vec::new(),
+            pull: Vec::new(),
+            own: Vec::new(),
         }
     }
-    merges
+
+    /// Nodes along a sphincter; its ends are those of one that is there already.
+    fn add_ring(&mut self, fibres: &[Fibre], starts: &[usize], range: Range<usize>) {
+        let first = &fibres[range.start].points;
+        let closed = chord(first) < 0.1 * length(first);
+        let spans = if closed { SPANS_CLOSED } else { SPANS_OPEN };
+        let count = if closed { spans } else { spans + 1 };
+        let (mut nodes, mut places) = (Vec::new(), Vec::new());
+        for k in 0..count {
+            let share = k as f32 / spans as f32;
+            let here: Vec<Place> = range
+                .clone()
+                .map(|f| place_at(&fibres[f].points, starts[f], share))
+                .collect();
+            let mean = |of: &dyn Fn(usize, usize) -> Vec3| {
+                let sum: Vec3 = range
+                    .clone()
+                    .zip(&here)
+                    .map(|(f, place)| {
+                        let i = place.point as usize - starts[f];
+                        of(f, i).lerp(of(f, i + 1), place.share)
+                    })
+                    .sum();
+                sum / here.len().max(1) as f32
+            };
+            let rest = mean(&|f, i| fibres[f].points[i]);
+            let mandible = mean(&|f, i| Vec3::splat(fibres[f].mandible[i])).x;
+            let end = !closed && (k == 0 || k == spans);
+            let shared = self.rings.first().filter(|_| end).map(|r| {
+                if k == 0 {
+                    r.nodes[0]
+                } else {
+                    r.nodes[r.nodes.len() - 1]
+                }
+            });
+            let number = if let Some(number) = shared {
+                let node = &mut self.nodes[number as usize];
+                node.rest = (node.rest + rest) * 0.5;
+                node.mandible = (node.mandible + mandible) * 0.5;
+                number
+            } else {
+                self.nodes.push(Node {
+                    rest,
+                    mandible,
+                    bounded: end,
+                });
+                self.nodes.len() as u32 - 1
+            };
+            nodes.push(number);
+            places.push(here);
+        }
+        let mut along = Vec::new();
+        for f in range.clone() {
+            let points = &fibres[f].points;
+            let whole = length(points).max(1e-3);
+            for i in 0..points.len() {
+                let share = length(&points[..=i]) / whole;
+                along.push((
+                    (starts[f] + i) as u32,
+                    Along::new(nodes.len(), closed, share),
+                ));
+            }
+        }
+        self.rings.push(Ring {
+            fibres: range,
+            nodes,
+            places,
+            closed,
+            along,
+        });
+    }
+
+    /// Ties the insertions of linear fibres to the nodes.
+    fn tie(&mut self, fibres: &[Fibre]) {
+        for (f, fibre) in fibres.iter().enumerate() {
+            let Some(&insertion) = fibre.points.last() else {
+                continue;
+            };
+            if fibre.contraction != Contraction::Linear {
+                continue;
+            }
+            // The nearest place of the sphincters that it can merge into.
+            let mut best: Option<(f32, usize, f32)> = None;
+            for (r, ring) in self.rings.iter().enumerate() {
+                if !merge_into(fibre.muscle, fibres[ring.fibres.start].muscle) {
+                    continue;
+                }
+                for other in &fibres[ring.fibres.clone()] {
+                    let (distance, share) = nearest(&other.points, insertion);
+                    if distance < REACH_MM && best.is_none_or(|b| distance < b.0) {
+                        best = Some((distance, r, share));
+                    }
+                }
+            }
+            let Some((distance, r, share)) = best else {
+                continue;
+            };
+            let ring = &self.rings[r];
+            let share = if at_modiolus(fibre.muscle) {
+                share.round()
+            } else {
+                share
+            };
+            let mut along = Along::new(ring.nodes.len(), ring.closed, share);
+            (along.a, along.b) = (ring.nodes[along.a as usize], ring.nodes[along.b as usize]);
+            let whole = length(&fibre.points).max(1e-3);
+            let hold = if at_modiolus(fibre.muscle) && fibre.muscle != Muscle::Platysma {
+                1.0
+            } else {
+                1.0 - (distance / REACH_MM).powi(2)
+            };
+            self.ties.push(Tie {
+                fibre: f,
+                along,
+                weight: along_and_across(insertion - fibre.points[0]) * hold,
+                hold,
+                shares: (0..fibre.points.len())
+                    .map(|i| length(&fibre.points[..=i]) / whole)
+                    .collect(),
+            });
+        }
+        // Fibres of one muscle together pull no harder than one.
+        let muscle = |t: &Tie| fibres[t.fibre].muscle;
+        let counts: Vec<f32> = self
+            .ties
+            .iter()
+            .map(|t| {
+                let near = |o: &&Tie| {
+                    muscle(o) == muscle(t)
+                        && fibres[o.fibre].points[0].x * fibres[t.fibre].points[0].x > 0.0
+                };
+                self.ties.iter().filter(near).count() as f32
+            })
+            .collect();
+        for (tie, count) in self.ties.iter_mut().zip(counts) {
+            tie.weight *= (2.0 / count).min(1.0);
+        }
+    }
+
+    /// The fibres that are joined here.
+    pub(crate) fn fibres(&self) -> impl Iterator<Item = usize> {
+        let rings = self.rings.iter().flat_map(|r| r.fibres.clone());
+        rings.chain(self.ties.iter().map(|t| t.fibre))
+    }
+
+    /// Moves the points of joined fibres from where each would be alone to where they are together.
+    /// `works` says how hard each fibre works, 0 to 1.
+    pub(crate) fn resolve(
+        &mut self,
+        works: &[f32],
+        mandible: &Affine3A,
+        rest: &[Vec3],
+        starts: &[usize],
+        points: &mut [Vec3],
+    ) {
+        self.meet(works, rest, starts, points);
+        for _ in 0..ITERATIONS {
+            self.relax(works);
+        }
+        for (node, shift) in self
+            .nodes
+            .iter()
+            .zip(&mut self.now)
+            .filter(|(n, _)| n.bounded)
+        {
+            let jaw = carried(node.rest, node.mandible, mandible) - node.rest;
+            *shift = jaw + bound(*shift - jaw, MODIOLUS_MAX_MM);
+        }
+        self.hand_back(rest, starts, points);
+    }
+
+    /// Every node goes to the weighted mean of its muscles.
+    fn meet(&mut self, works: &[f32], rest: &[Vec3], starts: &[usize], points: &[Vec3]) {
+        self.weight.fill(Mat3::ZERO);
+        self.pull.fill(Vec3::ZERO);
+        let mut slot = 0;
+        for ring in &self.rings {
+            let weight = IDLE + works[ring.fibres.start];
+            for (node, places) in ring.nodes.iter().zip(&ring.places) {
+                let sum: Vec3 = places.iter().map(|p| p.on(points) - p.on(rest)).sum();
+                let own = sum / places.len().max(1) as f32;
+                self.own[slot] = own;
+                slot += 1;
+                self.weight[*node as usize] += Mat3::from_diagonal(Vec3::splat(weight));
+                self.pull[*node as usize] += own * weight;
+            }
+        }
+        for tie in &self.ties {
+            let end = starts[tie.fibre + 1] - 1;
+            let own = points[end] - rest[end];
+            for (node, share) in tie.along.ends() {
+                let weight = tie.weight * (share * (IDLE + STRONGER * works[tie.fibre]));
+                self.weight[node] += weight;
+                self.pull[node] += weight * own;
+            }
+        }
+        for ((now, pull), weight) in self.now.iter_mut().zip(&self.pull).zip(&self.weight) {
+            *now = weight.inverse() * *pull;
+        }
+        // What the iterations divide by: the springs' stiffness resists in all directions.
+        self.stiffness.fill(0.0);
+        for ring in &self.rings {
+            let stiffness = SPRING + SPRING_WORK * works[ring.fibres.start];
+            for (i, j) in ring.spans() {
+                self.stiffness[ring.nodes[i] as usize] += stiffness;
+                self.stiffness[ring.nodes[j] as usize] += stiffness;
+            }
+        }
+        for ((solve, weight), s) in self.solve.iter_mut().zip(&self.weight).zip(&self.stiffness) {
+            *solve = (*weight + Mat3::from_diagonal(Vec3::splat(*s))).inverse();
+        }
+    }
+
+    /// One iteration: every node goes to the mean of where its muscles and its springs want it.
+    fn relax(&mut self, works: &[f32]) {
+        self.next.copy_from_slice(&self.pull);
+        let mut base = 0;
+        for ring in &self.rings {
+            let stiffness = SPRING + SPRING_WORK * works[ring.fibres.start];
+            for (i, j) in ring.spans() {
+                let (a, b) = (ring.nodes[i] as usize, ring.nodes[j] as usize);
+                let apart = self.nodes[b].rest - self.nodes[a].rest;
+                let alone = apart + self.own[base + j] - self.own[base + i];
+                let is = apart + self.now[b] - self.now[a];
+                let as_long = is * (alone.length() / is.length().max(1e-3));
+                let wanted = as_long.lerp(alone, UNTURNED) - apart;
+                self.next[a] += (self.now[b] - wanted) * stiffness;
+                self.next[b] += (self.now[a] + wanted) * stiffness;
+            }
+            base += ring.nodes.len();
+        }
+        for ((now, next), solve) in self.now.iter_mut().zip(&self.next).zip(&self.solve) {
+            *now = *solve * *next;
+        }
+    }
+
+    /// Fibres follow their nodes: sphincters between two of them, linear ones from their origin on, which
+    /// draws them straight.
+    fn hand_back(&self, rest: &[Vec3], starts: &[usize], points: &mut [Vec3]) {
+        let mut base = 0;
+        for ring in &self.rings {
+            let shift = |k: u32| {
+                let k = k as usize;
+                self.now[ring.nodes[k] as usize] - self.own[base + k]
+            };
+            for (point, along) in &ring.along {
+                points[*point as usize] += shift(along.a).lerp(shift(along.b), along.share);
+            }
+            base += ring.nodes.len();
+        }
+        for tie in &self.ties {
+            let range = starts[tie.fibre]..starts[tie.fibre + 1];
+            let end = range.end - 1;
+            let there = self.now[tie.along.a as usize]
+                .lerp(self.now[tie.along.b as usize], tie.along.share);
+            let drawn = (there - (points[end] - rest[end])) * tie.hold;
+            let fibre = &mut points[range];
+            let (chord, length) = (chord(fibre), length(fibre));
+            for (point, share) in fibre.iter_mut().zip(&tie.shares) {
+                *point += drawn * *share;
+            }
+            straighten(fibre, chord, length);
+        }
+    }
 }
 
-/// Whether fibres of a linear muscle end among those of a sphincter.
+impl Along {
+    /// Where on the nodes of a sphincter a share of its length is; by their order in it.
+    fn new(count: usize, closed: bool, share: f32) -> Self {
+        let spans = if closed { count } else { count - 1 };
+        let place = share.clamp(0.0, 1.0) * spans as f32;
+        let a = (place as usize).min(spans - 1);
+        Self {
+            a: a as u32,
+            b: ((a + 1) % count) as u32,
+            share: place - a as f32,
+        }
+    }
+
+    fn ends(self) -> [(usize, f32); 2] {
+        [
+            (self.a as usize, 1.0 - self.share),
+            (self.b as usize, self.share),
+        ]
+    }
+}
+
+impl Ring {
+    /// Neighbouring nodes, by their order in it.
+    fn spans(&self) -> impl Iterator<Item = (usize, usize)> {
+        let count = self.nodes.len();
+        let spans = if self.closed { count } else { count - 1 };
+        (0..spans).map(move |i| (i, (i + 1) % count))
+    }
+}
+
+/// Weights of a linear muscle that runs in this direction.
+fn along_and_across(direction: Vec3) -> Mat3 {
+    let d = direction.normalize_or(Vec3::X);
+    Mat3::from_cols(d * d.x, d * d.y, d * d.z) * (1.0 - ACROSS)
+        + Mat3::from_diagonal(Vec3::splat(ACROSS))
+}
+
+/// `v`, but never longer than `most`, which it approaches smoothly.
+fn bound(v: Vec3, most: f32) -> Vec3 {
+    let over = v.length_squared() / (most * most);
+    v / (1.0 + over * over).sqrt().sqrt()
+}
+
+/// Where on a fibre, whose points begin at `start`, a share of its length is.
+fn place_at(points: &[Vec3], start: usize, share: f32) -> Place {
+    let mut left = length(points) * share;
+    for (i, w) in points.windows(2).enumerate() {
+        let along = w[0].distance(w[1]);
+        if left <= along || i + 2 == points.len() {
+            return Place {
+                point: (start + i) as u32,
+                share: (left / along.max(1e-6)).clamp(0.0, 1.0),
+            };
+        }
+        left -= along;
+    }
+    Place {
+        point: start as u32,
+        share: 0.0,
+    }
+}
+
+/// How near a polygon comes to a place, and at which share of its length.
+fn nearest(points: &[Vec3], place: Vec3) -> (f32, f32) {
+    let (mut best, mut before) = ((f32::MAX, 0.0), 0.0);
+    for w in points.windows(2) {
+        let d = w[1] - w[0];
+        let share = ((place - w[0]).dot(d) / d.length_squared().max(1e-6)).clamp(0.0, 1.0);
+        let distance = place.distance(w[0] + d * share);
+        if distance < best.0 {
+            best = (distance, before + share * d.length());
+        }
+        before += d.length();
+    }
+    (best.0, best.1 / before.max(1e-3))
+}
+
+/// Whether a linear muscle ends at the modiolus, the node of muscles beside the corner of the mouth.
+const fn at_modiolus(linear: Muscle) -> bool {
+    matches!(
+        linear,
+        Muscle::ZygomaticusMajor
+            | Muscle::LevatorAnguliOris
+            | Muscle::Risorius
+            | Muscle::Buccinator
+            | Muscle::DepressorAnguliOris
+            | Muscle::Platysma
+    )
+}
+
+/// Whether fibres of a linear muscle end among those of a sphincter. Raisers of the upper lip end in the
+/// upper half of the orbicularis oris, depressors of the lower lip in the lower one; what moves the brows
+/// ends in the orbital part of the orbicularis oculi.
 const fn merge_into(linear: Muscle, sphincter: Muscle) -> bool {
     use Muscle::{
-        CorrugatorSupercilii, DepressorLabiiInferioris, DepressorSeptiNasi, DepressorSupercilii,
-        DilatorNaris, FrontalisInner, FrontalisOuter, LevatorLabiiSuperioris,
-        LevatorLabiiSuperiorisAlaequeNasi, Masseter, Mentalis, Nasalis, OrbicularisOculiOrbital,
-        OrbicularisOculiPalpebral, OrbicularisOrisInferior, OrbicularisOrisSuperior, Platysma,
-        Procerus, Temporalis, ZygomaticusMinor,
+        CorrugatorSupercilii, DepressorLabiiInferioris, DepressorSupercilii, FrontalisInner,
+        FrontalisOuter, LevatorLabiiSuperioris, LevatorLabiiSuperiorisAlaequeNasi,
+        OrbicularisOculiOrbital, OrbicularisOrisInferior, OrbicularisOrisSuperior,
+        ZygomaticusMinor,
     };
     match linear {
         LevatorLabiiSuperioris | LevatorLabiiSuperiorisAlaequeNasi | ZygomaticusMinor => {
@@ -75,11 +549,9 @@ const fn merge_into(linear: Muscle, sphincter: Muscle) -> bool {
         FrontalisInner | FrontalisOuter | CorrugatorSupercilii | DepressorSupercilii => {
             matches!(sphincter, OrbicularisOculiOrbital)
         }
-        Mentalis | Procerus | Nasalis | DilatorNaris | DepressorSeptiNasi | Platysma | Masseter
-        | Temporalis => false,
-        _ => !matches!(
-            sphincter,
-            OrbicularisOculiOrbital | OrbicularisOculiPalpebral
-        ),
+        _ => {
+            at_modiolus(linear)
+                && matches!(sphincter, OrbicularisOrisSuperior | OrbicularisOrisInferior)
+        }
     }
 }

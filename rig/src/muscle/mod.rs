@@ -1,11 +1,12 @@
 //! Muscles as fibres: control polygons that shorten (linear), close on an axis (sphincter) or bulge.
 //!
-//! HABER 4.2 and 5.1. Contraction, straightening under tension, the two-part orbicularis oris with a
-//! central axis, protrusion along it and a gradient from inner to outer fibre are here; bulging only
-//! of the two muscles of the jaw that lie between bones, and the springs between merged muscles not
-//! yet. Where the paper gives no number (how much a fibre shortens), the constants below are
-//! judgements. Where muscles come from: `grid`; where they merge into a sphincter: `merge`.
+//! HABER 4.2 and 5.1, point by point: contraction and straightening under tension are here, with the
+//! sphincter's central axis, protrusion along it and its gradient from inner to outer fibre; `bulge` makes
+//! contracted muscles thicker, `merge` joins merged muscles by nodes and springs, `system` does all of it
+//! for a head at a moment; where muscles come from is in `grid`, and `surface` draws them. Where the paper
+//! gives no number (how much a fibre shortens), the constants below are judgements.
 
+mod bulge;
 mod grid;
 mod merge;
 mod surface;
@@ -14,7 +15,6 @@ mod system;
 use glam::{Affine3A, Vec3, vec3};
 
 pub use grid::{Axis, GridPoint, MuscleGrid, Space, rebuild};
-use merge::{Merge, merges};
 pub use surface::{Belly, MuscleSurfaces, enclosed_volume};
 pub(crate) use system::Muscles;
 
@@ -28,15 +28,20 @@ const fn shortening(muscle: Muscle) -> f32 {
     match muscle {
         Muscle::FrontalisInner | Muscle::FrontalisOuter => 0.24,
         Muscle::Platysma => 0.2,
+        // They end in the lip, which comes no farther than to the nose.
+        Muscle::LevatorLabiiSuperioris | Muscle::LevatorLabiiSuperiorisAlaequeNasi => 0.22,
         // From bone to the corner of the mouth or beside it: longer than what it can be drawn by.
         Muscle::ZygomaticusMajor
         | Muscle::ZygomaticusMinor
         | Muscle::LevatorAnguliOris
         | Muscle::DepressorAnguliOris => 0.27,
+        Muscle::DepressorLabiiInferioris => 0.3,
         _ => LINEAR_SHORTENING,
     }
 }
 
+/// The least slack that a fibre counts as having, mm: so that a straight one does not jump.
+const SLACK_MM: f32 = 0.5;
 /// A fibre nearer to the middle of the face than this belongs to both sides.
 const MIDDLE_MM: f32 = 2.0;
 
@@ -76,16 +81,50 @@ pub struct Fibre {
     pub mandible: Vec<f32>,
 }
 
+/// What of a fibre at rest is asked for at every step.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Measure {
+    /// Length of the polygon, and distance of its ends, mm.
+    length: f32,
+    chord: f32,
+    /// The subject's left side, right side, or neither.
+    left: Option<bool>,
+}
+
+impl Measure {
+    pub(crate) fn new(fibre: &Fibre) -> Self {
+        let points = &fibre.points;
+        let middle = points.iter().map(|p| p.x).sum::<f32>() / points.len().max(1) as f32;
+        Self {
+            length: length(points),
+            chord: chord(points),
+            left: (middle.abs() >= MIDDLE_MM).then_some(middle > 0.0),
+        }
+    }
+}
+
 impl Fibre {
-    /// Writes the control polygon for `controls` into `out` (as long as `points`).
+    /// Writes the control polygon for `controls` into `out` (as long as `points`): what this fibre does
+    /// alone, before those that it is merged with have their say.
     pub fn contracted(&self, controls: &Controls, mandible: &Affine3A, out: &mut [Vec3]) {
+        self.contract(&Measure::new(self), controls, mandible, out);
+    }
+
+    /// As [`Self::contracted`], with what was measured at rest.
+    pub(crate) fn contract(
+        &self,
+        measure: &Measure,
+        controls: &Controls,
+        mandible: &Affine3A,
+        out: &mut [Vec3],
+    ) {
         for ((q, p), share) in out.iter_mut().zip(&self.points).zip(&self.mandible) {
             *q = carried(*p, *share, mandible);
         }
-        let contraction = self.told(controls);
+        let contraction = self.told(measure, controls);
         match self.contraction {
             Contraction::Linear => {
-                self.straighten(out);
+                straighten(out, measure.chord, measure.length);
                 shorten(out, 1.0 - shortening(self.muscle) * contraction);
             }
             Contraction::Belly { out: bulge } => {
@@ -101,11 +140,7 @@ impl Fibre {
                 protrusion_mm,
                 shrinking,
             } => {
-                let forward = match self.muscle {
-                    Muscle::OrbicularisOrisSuperior => controls[Control::ProtrusionSuperior],
-                    Muscle::OrbicularisOrisInferior => controls[Control::ProtrusionInferior],
-                    _ => 0.0,
-                } * protrusion_mm;
+                let forward = self.protrudes(controls) * protrusion_mm;
                 let axis = carried(centre, share, mandible);
                 let scale = 1.0 - shrinking * contraction;
                 for q in out {
@@ -116,44 +151,60 @@ impl Fibre {
         }
     }
 
-    /// Whether nothing moves it: no contraction or protrusion of its muscle beyond `still`, and, where it
-    /// hangs on the mandible, no motion of the jaw.
-    pub(crate) fn rests(&self, controls: &Controls, jaw_still: bool, still: f32) -> bool {
-        let protrudes = |control| controls[control].abs() >= still;
-        let active = self.told(controls).abs() >= still
-            || match self.muscle {
-                Muscle::OrbicularisOrisSuperior => protrudes(Control::ProtrusionSuperior),
-                Muscle::OrbicularisOrisInferior => protrudes(Control::ProtrusionInferior),
-                _ => false,
-            };
-        !active && (jaw_still || self.mandible.iter().all(|share| *share == 0.0))
+    /// How hard it works, 0 to 1: by contraction or protrusion.
+    pub(crate) fn works(&self, measure: &Measure, controls: &Controls) -> f32 {
+        let protrudes = self.protrudes(controls).abs();
+        self.told(measure, controls).abs().max(protrudes)
+    }
+
+    /// Whether the mandible takes any of it along.
+    pub(crate) fn hangs_on_mandible(&self) -> bool {
+        self.mandible.iter().any(|share| *share != 0.0)
+    }
+
+    /// The protrusion that `controls` ask of its muscle.
+    fn protrudes(&self, controls: &Controls) -> f32 {
+        match self.muscle {
+            Muscle::OrbicularisOrisSuperior => controls[Control::ProtrusionSuperior],
+            Muscle::OrbicularisOrisInferior => controls[Control::ProtrusionInferior],
+            _ => 0.0,
+        }
     }
 
     /// How much `controls` contract it: as their belly of the muscle on its side of the face.
-    fn told(&self, controls: &Controls) -> f32 {
+    fn told(&self, measure: &Measure, controls: &Controls) -> f32 {
         let uneven = Control::side(self.muscle).is_some_and(|side| controls[side] != 0.0);
-        let middle = self.points.iter().map(|p| p.x).sum::<f32>() / self.points.len().max(1) as f32;
-        if uneven && middle.abs() >= MIDDLE_MM {
-            controls.contraction(self.muscle, middle > 0.0)
-        } else {
-            controls[Control::contraction(self.muscle)]
+        match measure.left {
+            Some(left) if uneven => controls.contraction(self.muscle, left),
+            _ => controls[Control::contraction(self.muscle)],
         }
     }
+}
 
-    /// A curved fibre under tension approaches the straight line between its ends (HABER 5.1).
-    fn straighten(&self, out: &mut [Vec3]) {
-        let (Some(&first), Some(&last)) = (out.first(), out.last()) else {
-            return;
-        };
-        let chord = |p: &[Vec3]| p[0].distance(p[p.len() - 1]);
-        let length: f32 = self.points.windows(2).map(|w| w[0].distance(w[1])).sum();
-        let (rest, now) = (chord(&self.points), chord(out));
-        let tension = ((now - rest) / (length - rest).max(0.5)).clamp(0.0, 1.0);
-        let count = out.len();
-        for (i, q) in out.iter_mut().enumerate() {
-            let straight = first.lerp(last, i as f32 / (count - 1) as f32);
-            *q = q.lerp(straight, tension);
-        }
+fn length(points: &[Vec3]) -> f32 {
+    points.windows(2).map(|w| w[0].distance(w[1])).sum()
+}
+
+fn chord(points: &[Vec3]) -> f32 {
+    match (points.first(), points.last()) {
+        (Some(first), Some(last)) => first.distance(*last),
+        _ => 0.0,
+    }
+}
+
+/// A curved fibre under tension approaches the straight line between its ends, and is on it when they
+/// are as far apart as it is long (HABER 5.1); `chord` and `length` are those without the tension.
+fn straighten(out: &mut [Vec3], rest_chord: f32, length: f32) {
+    let (Some(&first), Some(&last)) = (out.first(), out.last()) else {
+        return;
+    };
+    let tension = ((chord(out) - rest_chord) / (length - rest_chord).max(SLACK_MM)).clamp(0.0, 1.0);
+    if tension == 0.0 {
+        return;
+    }
+    let ends = (out.len() - 1).max(1) as f32;
+    for (i, q) in out.iter_mut().enumerate() {
+        *q = q.lerp(first.lerp(last, i as f32 / ends), tension);
     }
 }
 
@@ -166,21 +217,33 @@ pub(crate) fn carried(p: Vec3, share: f32, mandible: &Affine3A) -> Vec3 {
     }
 }
 
-/// Slides every point towards the first one along the polygon, to `scale` times its distance.
+/// Slides every point towards the first one along the polygon, to `scale` times its distance. `scale` is
+/// at most 1.
 fn shorten(points: &mut [Vec3], scale: f32) {
-    // From the far end, so that the part of the polygon still to be walked is unchanged.
-    for i in (1..points.len()).rev() {
-        let arc: f32 = points[..=i].windows(2).map(|w| w[0].distance(w[1])).sum();
-        let mut left = arc * scale;
-        let mut place = points[i];
-        for j in 0..i {
-            let length = points[j].distance(points[j + 1]);
-            if left <= length {
-                place = points[j].lerp(points[j + 1], left / length.max(1e-6));
-                break;
-            }
-            left -= length;
+    if scale >= 1.0 || points.len() < 2 {
+        return;
+    }
+    // From the far end, so that the part of the polygon still to be walked is unchanged: one walk back for
+    // the points (to `i`, `arc` mm along), one for their places (in the segment from `j`, `from` mm along).
+    let mut i = points.len() - 1;
+    let mut arc = length(points);
+    let mut j = i - 1;
+    let mut from = arc - points[j].distance(points[i]);
+    while i > 0 {
+        let before = points[i - 1].distance(points[i]);
+        let place = arc * scale;
+        while from > place && j > 0 {
+            j -= 1;
+            from -= points[j].distance(points[j + 1]);
         }
-        points[i] = place;
+        let along = points[j].distance(points[j + 1]).max(1e-6);
+        // The segment's own end is unchanged still: it lies before `i`, or is `i`.
+        points[i] = points[j].lerp(points[j + 1], ((place - from) / along).clamp(0.0, 1.0));
+        arc -= before;
+        i -= 1;
+        if j >= i && i > 0 {
+            j = i - 1;
+            from = arc - points[j].distance(points[i]);
+        }
     }
 }

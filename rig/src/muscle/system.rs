@@ -1,8 +1,13 @@
-//! All fibres of a head in motion: contracted, merged, and how far each control point is from rest.
+//! All fibres of a head at a moment: each contracted alone, merged ones joined, contracted ones thicker.
+//!
+//! A pure function of controls and mandible: what is kept from call to call are buffers, and that a fibre
+//! at rest stays there is only a short cut.
 
 use glam::{Affine3A, Vec3, Vec3A};
 
-use super::{Merge, carried, merges};
+use super::bulge::thickened;
+use super::merge::Joined;
+use super::{Measure, length};
 use crate::{Control, Controls, Head};
 
 /// A control nearer to 0 than this does nothing, and a fibre's point nearer to rest than so many mm.
@@ -19,25 +24,50 @@ pub(crate) struct Muscles {
     starts: Vec<usize>,
     /// Whether anything of a fibre is away from rest.
     moved: Vec<bool>,
-    merges: Vec<Merge>,
+    /// Per fibre: measures at rest, whether it hangs on the mandible, how hard it works.
+    measures: Vec<Measure>,
+    hangs: Vec<bool>,
+    works: Vec<f32>,
+    /// Per point: how far a muscle twice as thick pushes the skin, mm.
+    swelling: Vec<Vec3A>,
+    joined: Vec<Group>,
+}
+
+/// Joined muscles, and which fibres they are.
+#[derive(Clone, Debug)]
+struct Group {
+    joined: Joined,
+    fibres: Vec<usize>,
 }
 
 impl Muscles {
     pub(crate) fn new(head: &Head) -> Self {
-        let rest: Vec<Vec3> = head
-            .fibres
-            .iter()
-            .flat_map(|f| f.points.iter().copied())
-            .collect();
+        let fibres = &head.fibres;
+        let rest: Vec<Vec3> = fibres.iter().flat_map(|f| f.points.clone()).collect();
         let mut starts = vec![0];
-        for fibre in &head.fibres {
+        for fibre in fibres {
             starts.push(starts[starts.len() - 1] + fibre.points.len());
         }
+        let swelling = fibres
+            .iter()
+            .flat_map(|f| (0..f.points.len()).map(|i| f.swelling(i).into()))
+            .collect();
+        let joined = Joined::find(fibres, &starts)
+            .into_iter()
+            .map(|joined| Group {
+                fibres: joined.fibres().collect(),
+                joined,
+            })
+            .collect();
         Self {
             points: rest.clone(),
             shift: vec![Vec3A::ZERO; rest.len()],
-            moved: vec![false; head.fibres.len()],
-            merges: merges(&head.fibres),
+            moved: vec![false; fibres.len()],
+            measures: fibres.iter().map(Measure::new).collect(),
+            hangs: fibres.iter().map(super::Fibre::hangs_on_mandible).collect(),
+            works: vec![0.0; fibres.len()],
+            swelling,
+            joined,
             rest,
             starts,
         }
@@ -48,7 +78,7 @@ impl Muscles {
         &self.points
     }
 
-    /// How far every control point is from rest.
+    /// How far skin on every control point is drawn and pushed from rest.
     pub(crate) fn shift(&self) -> &[Vec3A] {
         &self.shift
     }
@@ -63,31 +93,71 @@ impl Muscles {
         self.moved[fibre]
     }
 
+    /// Bit k mod 128 is set when anything of fibre k is away from rest.
+    pub(crate) fn moved_bits(&self) -> u128 {
+        (0..)
+            .zip(&self.moved)
+            .fold(0, |bits, (k, moved)| bits | u128::from(*moved) << (k % 128))
+    }
+
     /// Contracts all fibres as `state` has it.
     pub(crate) fn contract(&mut self, head: &Head, state: &Controls, mandible: &Affine3A) {
         let jaw_still = state[Control::Jaw].abs() < STILL;
+        // Each alone; `moved` says for now whether it was away from rest before.
         for (k, fibre) in head.fibres.iter().enumerate() {
             let range = self.starts[k]..self.starts[k + 1];
-            if fibre.rests(state, jaw_still, STILL) {
-                self.points[range.clone()].copy_from_slice(&self.rest[range]);
-            } else {
-                fibre.contracted(state, mandible, &mut self.points[range]);
+            let works = fibre.works(&self.measures[k], state);
+            self.works[k] = works;
+            if works >= STILL || (self.hangs[k] && !jaw_still) {
+                let points = &mut self.points[range];
+                fibre.contract(&self.measures[k], state, mandible, points);
+                self.moved[k] = true;
+            } else if self.moved[k] {
+                self.still(k);
             }
         }
-        for merge in &self.merges {
-            let end = self.starts[merge.puller + 1] - 1;
-            let puller = &head.fibres[merge.puller];
-            let share = puller.mandible.last().copied().unwrap_or(0.0);
-            let pull = self.points[end] - carried(self.rest[end], share, mandible);
-            self.points[self.starts[merge.fibre] + merge.point] += pull * merge.share;
+        for group in &mut self.joined {
+            if group.fibres.iter().all(|k| !self.moved[*k]) {
+                continue;
+            }
+            let Self {
+                works,
+                rest,
+                starts,
+                points,
+                ..
+            } = self;
+            group.joined.resolve(works, mandible, rest, starts, points);
+            for &k in &group.fibres {
+                self.moved[k] = true;
+            }
         }
-        for ((shift, point), rest) in self.shift.iter_mut().zip(&self.points).zip(&self.rest) {
-            *shift = (*point - *rest).into();
+        for k in 0..self.moved.len() {
+            if self.moved[k] && !self.shift_fibre(k) {
+                self.still(k);
+            }
         }
-        for (moved, range) in self.moved.iter_mut().zip(self.starts.windows(2)) {
-            *moved = self.shift[range[0]..range[1]]
-                .iter()
-                .any(|s| s.length_squared() > STILL_MM * STILL_MM);
+    }
+
+    /// Puts a fibre exactly to rest.
+    fn still(&mut self, k: usize) {
+        let range = self.starts[k]..self.starts[k + 1];
+        self.points[range.clone()].copy_from_slice(&self.rest[range.clone()]);
+        self.shift[range].fill(Vec3A::ZERO);
+        self.moved[k] = false;
+    }
+
+    /// Sets how far one fibre is from rest, and says whether it is.
+    fn shift_fibre(&mut self, k: usize) -> bool {
+        let range = self.starts[k]..self.starts[k + 1];
+        let now = length(&self.points[range.clone()]);
+        let thicker = thickened(self.measures[k].length, now) - 1.0;
+        let mut moved = false;
+        for i in range {
+            let shift = Vec3A::from(self.points[i] - self.rest[i]) + self.swelling[i] * thicker;
+            moved |= shift.length_squared() > STILL_MM * STILL_MM;
+            self.shift[i] = shift;
         }
+        moved
     }
 }

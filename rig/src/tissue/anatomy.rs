@@ -1,16 +1,16 @@
 //! How the tissue is made, as functions of a place on the reference head: which skin moves, how fast it
-//! is to the bone under it, what share of the mandible's motion it takes, which fibres hold it.
+//! is to the bone under it, what share of the mandible's motion it takes. Which fibres hold it: `holds`.
 //!
 //! All vertices have the same mass: on a graded mesh, masses by area would force a step several times
 //! shorter. Stiffness is therefore given per unit of mass, in 1/s².
 
 use glam::Vec3;
 
+use crate::Head;
 use crate::mesh::LIP_LEVELS;
 use crate::mesh::lip_level::CONTACT;
 use crate::mesh::ramp;
-use crate::muscle::{Contraction, Space};
-use crate::{Head, Muscle};
+use crate::muscle::Space;
 
 /// Stiffness per mass of a skin edge.
 pub(super) const EDGE: f32 = 34_000.0;
@@ -19,26 +19,8 @@ const BONE_THIN: f32 = 60_000.0;
 const BONE_SOFT: f32 = 1_500.0;
 /// What is left of that stiffness where the forehead's skin slides over the bone.
 const FOREHEAD: f32 = 0.12;
-/// Of a spring to a muscle fibre right beside the vertex.
-const FIBRE: f32 = 26_000.0;
 /// Of a lid's hold on its margin.
 pub(super) const LID: f32 = 150_000.0;
-/// A fibre holds vertices within this distance, mm; one of the thin sheets within the other.
-const FIBRE_REACH_MM: f32 = 13.0;
-const SHEET_REACH_MM: f32 = 19.0;
-/// A vertex is held by at most this many fibres of each muscle's side.
-const FIBRES_MAX: usize = 6;
-
-/// A spring to a place on a fibre: between control points `point` and `point + 1`.
-#[derive(Clone, Copy, Debug)]
-pub(super) struct Attachment {
-    pub vertex: u32,
-    pub fibre: u32,
-    pub point: u32,
-    pub share: f32,
-    pub stiffness: f32,
-}
-
 /// Where on a lip or beside it a vertex lies: above the slit, below it, or neither.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Side {
@@ -140,99 +122,4 @@ pub(super) fn bone_depth(head: &Head, places: &[Vec3]) -> Vec<(Vec3, f32)> {
     let bones = ["skull", "mandible"].into_iter();
     let space = Space::new(bones.filter_map(|name| head.part(name)).map(|p| &p.mesh));
     places.iter().map(|p| space.under(*p)).collect()
-}
-
-/// The springs of one vertex to the fibres near it.
-pub(super) fn attach(head: &Head, vertex: usize, p: Vec3, side: Side, lid: f32) -> Vec<Attachment> {
-    let mut found: Vec<(f32, Attachment)> = Vec::new();
-    for (f, fibre) in head.fibres.iter().enumerate() {
-        let other_lip = match fibre.muscle {
-            Muscle::OrbicularisOrisSuperior | Muscle::LevatorLabiiSuperioris => Side::Lower,
-            Muscle::OrbicularisOrisInferior
-            | Muscle::DepressorLabiiInferioris
-            | Muscle::Mentalis => Side::Upper,
-            _ => Side::Neither,
-        };
-        if side == other_lip && side != Side::Neither {
-            continue;
-        }
-        let (mut best, mut place) = (f32::MAX, (0, 0.0));
-        for (j, w) in fibre.points.windows(2).enumerate() {
-            let d = w[1] - w[0];
-            let share = ((p - w[0]).dot(d) / d.length_squared().max(1e-6)).clamp(0.0, 1.0);
-            let distance = p.distance(w[0] + d * share);
-            if distance < best {
-                (best, place) = (distance, (j, share));
-            }
-        }
-        let sheet = matches!(
-            fibre.muscle,
-            Muscle::FrontalisInner | Muscle::FrontalisOuter | Muscle::Masseter | Muscle::Temporalis
-        );
-        let reach = if sheet {
-            SHEET_REACH_MM
-        } else {
-            FIBRE_REACH_MM
-        };
-        if best >= reach {
-            continue;
-        }
-        let near = 1.0 - best / reach;
-        // At its origin a linear muscle lies on bone and holds no skin.
-        let along = (place.0 as f32 + place.1) / (fibre.points.len() - 1) as f32;
-        let (hold, weight) = match fibre.contraction {
-            // A sheet draws all the skin over it along.
-            Contraction::Linear if sheet => (along.sqrt(), 0.6),
-            // Those of the frown are short and end in the skin itself.
-            Contraction::Linear if frowns(fibre.muscle) => (along.powi(2), 1.2),
-            // What raises the corner of the mouth takes the cheek along.
-            Contraction::Linear if carries_cheek(fibre.muscle) => (along.powi(2), 0.6),
-            Contraction::Linear => (along.powi(3), 0.6),
-            Contraction::Sphincter { .. } => (1.0, 1.0),
-            Contraction::Belly { .. } => ((std::f32::consts::PI * along).sin(), 0.6),
-        };
-        let least = if fibre.muscle as usize >= Muscle::FrontalisInner as usize {
-            0.015
-        } else {
-            0.004
-        };
-        // What a lid carries is the lid's: the muscles of the brow end over it.
-        let hold = if fibre.muscle as usize >= Muscle::FrontalisInner as usize {
-            hold * (1.0 - lid).powi(2)
-        } else {
-            hold
-        };
-        let stiffness = FIBRE * weight * hold * near * near;
-        if stiffness > least * FIBRE {
-            found.push((
-                stiffness,
-                Attachment {
-                    vertex: vertex as u32,
-                    fibre: f as u32,
-                    point: place.0 as u32,
-                    share: place.1,
-                    stiffness,
-                },
-            ));
-        }
-    }
-    found.sort_by(|a, b| b.0.total_cmp(&a.0));
-    found.truncate(FIBRES_MAX);
-    found.into_iter().map(|(_, a)| a).collect()
-}
-
-/// Whether a muscle lies in the fat of the cheek and lifts it.
-const fn carries_cheek(muscle: Muscle) -> bool {
-    matches!(
-        muscle,
-        Muscle::ZygomaticusMajor | Muscle::ZygomaticusMinor | Muscle::LevatorAnguliOris
-    )
-}
-
-/// Whether a muscle ends in the skin of the brow and draws it together or down.
-const fn frowns(muscle: Muscle) -> bool {
-    matches!(
-        muscle,
-        Muscle::CorrugatorSupercilii | Muscle::Procerus | Muscle::DepressorSupercilii
-    )
 }

@@ -4,6 +4,7 @@
 //! |---|---|
 //! | `nodes` | places and velocities, and which skin vertices they are |
 //! | `anatomy` | how thick and fast the tissue is, as functions of a place on the reference head |
+//! | `holds` | which fibres hold which skin |
 //! | `show` | the default model's springs as lines, for pictures |
 //! | `cheeks` | the volume of each cheek |
 //! | `layered` | LEE 4 to 8: epidermis, fascia and skull in prisms |
@@ -13,6 +14,7 @@
 
 mod anatomy;
 mod cheeks;
+mod holds;
 mod layered;
 mod nodes;
 mod show;

@@ -5,7 +5,8 @@
 use glam::Vec3;
 
 use super::Numbering;
-use super::anatomy::{attach, mandible_share, sides};
+use super::anatomy::{mandible_share, sides};
+use super::holds::attachments;
 use crate::anatomy::{SpringKind, SpringLine};
 use crate::muscle::{Muscles, Space, carried};
 use crate::{Control, Head, KeyFrame};
@@ -38,11 +39,6 @@ pub(crate) fn spring_lines(head: &Head, frame: &KeyFrame) -> Vec<SpringLine> {
     muscles.contract(head, &frame.state, &mandible);
     let reference = numbering.of(&head.skin.reference);
     let side = numbering.of(&sides(head));
-    let mut lid_hold = vec![0.0_f32; head.skin.mesh.positions.len()];
-    for lid in &head.lids {
-        lid_hold[lid.vertex as usize] = lid.hold;
-    }
-    let lid_hold = numbering.of(&lid_hold);
     let bones = ["skull", "mandible"].into_iter();
     let space = Space::new(bones.filter_map(|name| head.part(name)).map(|p| &p.mesh));
     for i in 0..numbering.movable {
@@ -51,12 +47,13 @@ pub(crate) fn spring_lines(head: &Head, frame: &KeyFrame) -> Vec<SpringLine> {
         let share = mandible_share(reference[i], side[i]);
         let at = carried(bone, share, &mandible);
         add(SpringKind::Bone, [rest[i], bone], [now[i], at]);
-        for hold in attach(head, i, rest[i], side[i], lid_hold[i]) {
-            let k = muscles.starts()[hold.fibre as usize] + hold.point as usize;
-            let on = |points: &[Vec3]| points[k].lerp(points[k + 1], hold.share);
-            let ends = [now[i], on(muscles.points())];
-            add(SpringKind::Muscle, [rest[i], on(&fibres_rest)], ends);
-        }
+    }
+    for hold in attachments(head, &numbering) {
+        let i = hold.vertex as usize;
+        let k = muscles.starts()[hold.fibre as usize] + hold.point as usize;
+        let on = |points: &[Vec3]| points[k].lerp(points[k + 1], hold.share);
+        let ends = [now[i], on(muscles.points())];
+        add(SpringKind::Muscle, [rest[i], on(&fibres_rest)], ends);
     }
     lines
 }

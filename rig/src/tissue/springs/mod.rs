@@ -24,8 +24,9 @@ pub(super) mod simd;
 
 use glam::{Affine3A, Vec3A};
 
-use super::anatomy::{EDGE, attach, bone_depth, bone_stiffness, mandible_share, sides};
+use super::anatomy::{EDGE, bone_depth, bone_stiffness, mandible_share, sides};
 use super::cheeks::{Cheek, cheeks};
+use super::holds::attachments;
 use super::{Drive, Nodes, Numbering, Tissue};
 use crate::simulation::STEP_S;
 use crate::{Control, Head, TissueRecord};
@@ -88,13 +89,8 @@ impl Springs {
         for fibre in &head.fibres {
             starts.push(starts[starts.len() - 1] + fibre.points.len() as u32);
         }
-        let mut lid_hold = vec![0.0_f32; head.skin.mesh.positions.len()];
-        for lid in &head.lids {
-            lid_hold[lid.vertex as usize] = lid.hold;
-        }
-        let lid_hold = numbering.of(&lid_hold);
-        let holds: Vec<Hold> = (0..numbering.movable)
-            .flat_map(|i| attach(head, i, rest[i], side[i], lid_hold[i]))
+        let holds: Vec<Hold> = attachments(head, numbering)
+            .into_iter()
             .map(|a| Hold {
                 node: a.vertex,
                 fibre: a.fibre,
