@@ -8,8 +8,8 @@
 use glam::{Affine3A, Quat, Vec3, vec3};
 
 use crate::Control;
+use crate::follow::Follow;
 use crate::head::about;
-use crate::simulation::STEP_S;
 
 /// How far the condyles slide forward as the jaw opens (order of size from Vatikiotis-Bateson and
 /// Ostry: translation is linear in rotation; the figure itself is a judgement).
@@ -17,7 +17,7 @@ const SLIDE_MM_PER_RAD: f32 = 14.0;
 /// Which way: along the front slope of the joint's socket.
 const SLIDE: Vec3 = vec3(0.0, -0.3, 1.0);
 /// How fast it comes to where it is wanted when its muscles are strong enough (critically damped), 1/s.
-const RATE: f32 = 130.0;
+const RATE: f32 = 115.0;
 /// What its muscles can do to it, rad/s². Papers and tables give no figure for speech; a mandible with the flesh on it
 /// has about 0.3 kg some 80 mm from the axis, 0.002 kg m², and 1.2 N m is a twentieth of a hard bite. From
 /// this follow 38 ms for nine tenths of a wide vowel's opening or closing (0.2 rad; 31 ms without a bound), where a
@@ -34,13 +34,16 @@ pub(crate) fn pose(condyle: Vec3, jaw_rad: f32) -> Affine3A {
 }
 
 /// Angle and speed, rad and rad/s, a step later.
-pub(crate) fn step(angle: f32, speed: f32, wanted: f32) -> (f32, f32) {
-    // Implicit in the speed, so that it is stable at any rate; then bounded by the muscles.
-    let gain = RATE * STEP_S;
-    let free = (speed + RATE * gain * (wanted - angle)) / ((1.0 + gain) * (1.0 + gain));
-    let most = ACCELERATION_MAX * STEP_S;
-    let speed = speed + (free - speed).clamp(-most, most);
-    let angle = angle + speed * STEP_S;
+pub(crate) fn step(angle: f32, speed: f32, wanted: f32, step_s: f32) -> (f32, f32) {
+    let (free, free_speed) = Follow::new(RATE, step_s).step(angle, speed, wanted);
+    let most = ACCELERATION_MAX * step_s;
+    let (angle, speed) = if (free_speed - speed).abs() <= most {
+        (free, free_speed)
+    } else {
+        // More than its muscles can do.
+        let speed = speed + (free_speed - speed).clamp(-most, most);
+        (angle + speed * step_s, speed)
+    };
     // Teeth on teeth, ligaments taut: stopped at once.
     let (shut, open) = Control::Jaw.range();
     if angle < shut {
@@ -55,12 +58,13 @@ pub(crate) fn step(angle: f32, speed: f32, wanted: f32) -> (f32, f32) {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::simulation::STEP_S;
 
     /// Angles, one a step, on the way from one place to another.
     fn way(from: f32, to: f32, steps: usize) -> Vec<f32> {
         let mut now = (from, 0.0);
         let mut go = || {
-            now = step(now.0, now.1, to);
+            now = step(now.0, now.1, to, STEP_S);
             now.0
         };
         (0..steps).map(|_| go()).collect()

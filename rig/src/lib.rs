@@ -9,6 +9,7 @@
 //! | `control` | one number per muscle, jaw, tongue, lid, gaze and head angle |
 //! | `expression` | named settings of the muscles, scripts of them, and both over speech |
 //! | `file` | a head as a .glb file |
+//! | `follow` | how muscles and joints follow what they are told |
 //! | `head` | a head as data, with its landmarks, and where its bodies are |
 //! | `mesh` | what it is drawn of: skin, parts, the bodies they hang on |
 //! | `reference` | the head that is built in |
@@ -35,6 +36,7 @@ mod contact;
 mod control;
 mod expression;
 mod file;
+mod follow;
 mod head;
 mod jaw;
 mod key_frame;
@@ -52,7 +54,9 @@ mod tongue;
 pub use anatomy::{Anatomy, SpringKind, SpringLine, undressed};
 pub use anthropometry::{Measurement, measurements};
 pub use articulation::{Articulation, Tongue};
-pub use calibration::{Calibration, CalibrationError};
+pub use calibration::{
+    Calibration, CalibrationError, Measure, MeasureError, Miss, Reach, Verification,
+};
 pub use control::{Control, Controls, Muscle};
 pub use expression::{Expression, ExpressionError, Library, Mouth, Script};
 pub use file::HeadError;
@@ -70,4 +74,5 @@ pub use subdivision::{
     Detail, LipStencils, Stencils, Subdivision, SubdivisionError, Topology, fit_control,
     limit_stencils,
 };
+pub use tissue::{Isa, SpringPass};
 pub use tissue_record::{TissueModel, TissueRecord};

@@ -8,9 +8,10 @@ use std::sync::Arc;
 use glam::Vec3;
 
 use crate::contact::Contact;
+use crate::follow::Follow;
 use crate::key_frame::TICK_RATE;
 use crate::muscle::Muscles;
-use crate::tissue::{Drive, cheeks, Layered, Numbering, Springs, Tissue};
+use crate::tissue::{Drive, Layered, Numbering, Springs, Tissue, cheeks};
 use crate::tongue::Tongue;
 use crate::{Control, Controls, Head, KeyFrame, TissueModel, jaw};
 
@@ -19,8 +20,8 @@ pub const STEP_TICKS: i64 = 100;
 /// The same in seconds.
 pub(crate) const STEP_S: f32 = STEP_TICKS as f32 / TICK_RATE as f32;
 /// How fast components follow their controls (critically damped), 1/s.
-const MUSCLE_RATE: f32 = 170.0;
-const HEAD_RATE: f32 = 40.0;
+const MUSCLE_RATE: f32 = 145.0;
+const HEAD_RATE: f32 = 38.0;
 
 /// The tissue's model that a head asks for.
 #[derive(Clone, Debug)]
@@ -70,6 +71,7 @@ pub struct Simulation {
     muscle_stiffness: f32,
     damping: f32,
     volume: f32,
+    substeps: u32,
 }
 
 impl Simulation {
@@ -93,6 +95,7 @@ impl Simulation {
             muscle_stiffness: 1.0,
             damping: 1.0,
             volume: 1.0,
+            substeps: 1,
         }
     }
 
@@ -150,6 +153,11 @@ impl Simulation {
         self.volume = scale;
     }
 
+    /// Cuts each step into `count` shorter ones (1 at least), to see whether the step is short enough.
+    pub fn set_substeps(&mut self, count: u32) {
+        self.substeps = count.max(1);
+    }
+
     /// Whether lips, teeth, lids and eyeballs stop each other at all.
     pub fn set_contacts(&mut self, on: bool) {
         self.contacts = on;
@@ -177,23 +185,28 @@ impl Simulation {
 
     /// One step towards `controls`.
     pub fn step(&mut self, controls: &Controls) {
-        self.follow(&controls.clamped());
-        let mandible = self.head.mandible(self.state[Control::Jaw]);
-        self.muscles.contract(&self.head, &self.state, &mandible);
-        let drive = Drive {
-            head: &self.head,
-            state: &self.state,
-            mandible,
-            muscles: &self.muscles,
-            muscle_stiffness: self.muscle_stiffness,
-            damping: self.damping,
-            volume: self.volume,
-        };
-        let tissue = self.model.tissue_mut();
-        tissue.step(&drive);
-        if self.contacts {
-            self.contact
-                .resolve(tissue.skin_mut(), &mandible, &self.state, self.lip_contact);
+        let wanted = controls.clamped();
+        let step_s = STEP_S / self.substeps as f32;
+        for _ in 0..self.substeps {
+            self.follow(&wanted, step_s);
+            let mandible = self.head.mandible(self.state[Control::Jaw]);
+            self.muscles.contract(&self.head, &self.state, &mandible);
+            let drive = Drive {
+                head: &self.head,
+                state: &self.state,
+                mandible,
+                muscles: &self.muscles,
+                muscle_stiffness: self.muscle_stiffness,
+                damping: self.damping,
+                volume: self.volume,
+                step_s,
+            };
+            let tissue = self.model.tissue_mut();
+            tissue.step(&drive);
+            if self.contacts {
+                self.contact
+                    .resolve(tissue.skin_mut(), &mandible, &self.state, self.lip_contact);
+            }
         }
         self.time += STEP_TICKS;
     }
@@ -207,6 +220,7 @@ impl Simulation {
             muscle_stiffness: self.muscle_stiffness,
             damping: self.damping,
             volume: self.volume,
+            step_s: STEP_S / self.substeps as f32,
         }
     }
 
@@ -275,30 +289,27 @@ impl Simulation {
     }
 
     /// Muscles, jaw and the rest follow their controls with inertia: no joint moves at once.
-    fn follow(&mut self, wanted: &Controls) {
+    fn follow(&mut self, wanted: &Controls, step_s: f32) {
+        let (muscle, head) = (
+            Follow::new(MUSCLE_RATE, step_s),
+            Follow::new(HEAD_RATE, step_s),
+        );
         for &control in Control::ALL {
-            let rate = match control {
+            let follow = match control {
                 // Those have limits and contacts of their own.
                 Control::Jaw | Control::TongueTip | Control::TongueOut | Control::TongueBody => {
                     continue;
                 }
-                Control::HeadYaw | Control::HeadPitch | Control::HeadRoll => HEAD_RATE,
-                _ => MUSCLE_RATE,
+                Control::HeadYaw | Control::HeadPitch | Control::HeadRoll => head,
+                _ => muscle,
             };
-            // Implicit in the velocity, so that it is stable at any rate.
-            let (x, v) = (self.state[control], self.rate[control]);
-            let gain = rate * STEP_S;
-            let v = (v + rate * gain * (wanted[control] - x)) / ((1.0 + gain) * (1.0 + gain));
-            self.rate[control] = v;
-            self.state[control] = x + v * STEP_S;
+            (self.state[control], self.rate[control]) =
+                follow.step(self.state[control], self.rate[control], wanted[control]);
         }
-        let (angle, speed) = jaw::step(
-            self.state[Control::Jaw],
-            self.rate[Control::Jaw],
-            wanted[Control::Jaw],
-        );
-        (self.state[Control::Jaw], self.rate[Control::Jaw]) = (angle, speed);
+        let jaw = Control::Jaw;
+        (self.state[jaw], self.rate[jaw]) =
+            jaw::step(self.state[jaw], self.rate[jaw], wanted[jaw], step_s);
         self.tongue
-            .step(&self.head, wanted, &mut self.state, &mut self.rate);
+            .step(&self.head, wanted, &mut self.state, &mut self.rate, step_s);
     }
 }

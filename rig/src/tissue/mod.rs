@@ -29,6 +29,7 @@ pub(crate) use layered::Layered;
 pub(crate) use nodes::{Nodes, Numbering};
 pub(crate) use show::spring_lines;
 pub(crate) use springs::Springs;
+pub use springs::{Isa, SpringPass};
 
 use crate::muscle::Muscles;
 use crate::{Controls, Head};
@@ -49,12 +50,14 @@ pub(crate) struct Drive<'a> {
     pub damping: f32,
     /// Scales what keeps the tissue's volume.
     pub volume: f32,
+    /// Length of the step, s.
+    pub step_s: f32,
 }
 
 /// A model of soft tissue. Its nodes begin with those of the skin that move, in the order of the
 /// [`Numbering`] that it was made with; what it has inside comes apart from them.
 pub(crate) trait Tissue: Debug {
-    /// One step of [`STEP_S`](crate::simulation::STEP_S) under `drive`. Allocates nothing.
+    /// One step under `drive`. Allocates nothing.
     fn step(&mut self, drive: &Drive<'_>);
     /// The skin's nodes.
     fn skin(&self) -> &Nodes;

@@ -98,7 +98,7 @@ impl Numbering {
 }
 
 /// Interleaves the bits of a place on a 4 mm grid, so that neighbours lie close in memory.
-fn morton(p: Vec3) -> u64 {
+pub(super) fn morton(p: Vec3) -> u64 {
     let cell = ((p + 256.0) / 4.0).max(Vec3::ZERO);
     let spread =
         |v: f32| (0..10).fold(0_u64, |sum, bit| sum | ((v as u64 >> bit & 1) << (3 * bit)));

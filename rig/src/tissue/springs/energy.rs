@@ -19,7 +19,8 @@ impl Springs {
             energy += 0.5 * self.nodes.velocity[i].as_dvec3().length_squared();
             for (other, rest) in &node.edges {
                 let stretch = place(*other).distance(place(i)) - f64::from(*rest);
-                let stiffness = f64::from(EDGE) * if stretch < 0.0 { f64::from(SLACK) } else { 1.0 };
+                let stiffness =
+                    f64::from(EDGE) * if stretch < 0.0 { f64::from(SLACK) } else { 1.0 };
                 // Half of it, where the edge is met again at its other end.
                 let share = if *other < self.movable { 0.25 } else { 0.5 };
                 energy += f64::from(self.per_mass) * share * stiffness * stretch * stretch;

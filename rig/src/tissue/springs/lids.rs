@@ -63,7 +63,9 @@ impl Lids {
         let closed = |left: bool| {
             let lid = drive.state[if left { Control::LidL } else { Control::LidR }];
             // The orbicularis oculi's part in the lids closes what they have left open.
-            let muscle = drive.state.contraction(Muscle::OrbicularisOculiPalpebral, left)
+            let muscle = drive
+                .state
+                .contraction(Muscle::OrbicularisOculiPalpebral, left)
                 * drive.muscle_stiffness.min(1.0);
             1.0 - (1.0 - lid) * (1.0 - muscle)
         };
@@ -83,7 +85,8 @@ impl Lids {
 fn sin_cos(x: f32) -> (f32, f32) {
     let q = x * x;
     let s = x * (1.0 - q / 6.0 * (1.0 - q / 20.0 * (1.0 - q / 42.0 * (1.0 - q / 72.0))));
-    let c = 1.0 - q / 2.0 * (1.0 - q / 12.0 * (1.0 - q / 30.0 * (1.0 - q / 56.0 * (1.0 - q / 90.0))));
+    let c =
+        1.0 - q / 2.0 * (1.0 - q / 12.0 * (1.0 - q / 30.0 * (1.0 - q / 56.0 * (1.0 - q / 90.0))));
     (s, c)
 }
 
@@ -96,7 +99,10 @@ mod tests {
         for i in -140..=140 {
             let x = i as f32 / 100.0;
             let (s, c) = sin_cos(x);
-            assert!((s - x.sin()).abs() < 2e-6 && (c - x.cos()).abs() < 2e-6, "{x}");
+            assert!(
+                (s - x.sin()).abs() < 2e-6 && (c - x.cos()).abs() < 2e-6,
+                "{x}"
+            );
         }
     }
 }

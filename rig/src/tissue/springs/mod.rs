@@ -15,12 +15,14 @@
 //! | `ring` | neighbours in their order round a node |
 //! | `lids` | what turns the lids |
 //! | `energy` | the energy of it all, for tests |
+//! | `pass` | the edges alone, for measuring |
 //! | `simd` | the passes over all springs |
 
 mod energy;
 mod lids;
+mod pass;
 mod ring;
-pub(super) mod simd;
+mod simd;
 
 use glam::{Affine3A, Vec3A};
 
@@ -28,10 +30,11 @@ use super::anatomy::{EDGE, bone_depth, bone_stiffness, mandible_share, sides};
 use super::cheeks::{Cheek, cheeks};
 use super::holds::attachments;
 use super::{Drive, Nodes, Numbering, Tissue};
-use crate::simulation::STEP_S;
 use crate::{Control, Head, TissueRecord};
 use lids::Lids;
-use simd::{Ground, Hold, Isa, Kick, Mesh};
+pub use pass::SpringPass;
+pub use simd::Isa;
+use simd::{Ground, Hold, Kick, Mesh};
 
 /// Damping per mass, 1/s: a little over critical for a vertex on its muscle.
 const DAMPING: f32 = 420.0;
@@ -130,8 +133,8 @@ impl Springs {
         let mut carry = drive.mandible;
         carry.matrix3 -= Affine3A::IDENTITY.matrix3;
         Kick {
-            step: STEP_S * self.per_mass,
-            keep: (-DAMPING * drive.damping * STEP_S).exp(),
+            step: drive.step_s * self.per_mass,
+            keep: (-DAMPING * drive.damping * drive.step_s).exp(),
             edge: EDGE,
             slack: SLACK,
             bone: STOP,
@@ -190,7 +193,7 @@ impl Tissue for Springs {
         if drive.volume > 0.0 {
             self.press(drive, &kick);
         }
-        simd::drift(self.isa, &mut self.nodes, STEP_S);
+        simd::drift(self.isa, &mut self.nodes, drive.step_s);
     }
 
     fn skin(&self) -> &Nodes {

@@ -51,7 +51,10 @@ fn walk(mut left: Vec<(u32, u32, f32)>, rest_mm: impl Fn(u32) -> f32) -> Vec<Nei
         }
     }
     // A closing neighbour that no volume needs is no row either.
-    while ring.last().is_some_and(|n| n.rest_mm < 0.0 && n.corner == 0.0) {
+    while ring
+        .last()
+        .is_some_and(|n| n.rest_mm < 0.0 && n.corner == 0.0)
+    {
         ring.pop();
     }
     ring

@@ -181,9 +181,8 @@ impl Lanes for Eight {
         let nodes = &mut nodes[first..first + 8];
         let from = nodes.as_ptr();
         // SAFETY: eight nodes, see the slice.
-        let old: [__m256; 4] = std::array::from_fn(|k| {
-            halves(|q| unsafe { _mm_load_ps(from.add(q + k).cast()) })
-        });
+        let old: [__m256; 4] =
+            std::array::from_fn(|k| halves(|q| unsafe { _mm_load_ps(from.add(q + k).cast()) }));
         for (k, (old, change)) in old.into_iter().zip(rows(change)).enumerate() {
             // SAFETY: see `splat`.
             let new = unsafe {

@@ -192,9 +192,8 @@ impl Lanes for Sixteen {
         let nodes = &mut nodes[first..first + 16];
         let from = nodes.as_ptr();
         // SAFETY: sixteen nodes, see the slice.
-        let old: [__m512; 4] = std::array::from_fn(|k| {
-            quarters(|q| unsafe { _mm_load_ps(from.add(q + k).cast()) })
-        });
+        let old: [__m512; 4] =
+            std::array::from_fn(|k| quarters(|q| unsafe { _mm_load_ps(from.add(q + k).cast()) }));
         for (k, (old, change)) in old.into_iter().zip(rows(change)).enumerate() {
             // SAFETY: see `splat`.
             let new = unsafe {

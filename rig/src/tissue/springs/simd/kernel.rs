@@ -217,9 +217,8 @@ pub(super) fn stretch<L: Lanes>(mesh: &Mesh, nodes: &Nodes, force: &mut [Vec3A])
             let first = b * BLOCK + part * L::N;
             let own = L::own(&nodes.place, first);
             // SAFETY: `Mesh::new` has checked the indices against the number of nodes, and `Mesh::check` that number.
-            let (pull, _) = unsafe {
-                edges::<L, false>(mesh, block, part, &nodes.place, own, L::splat(1.0))
-            };
+            let (pull, _) =
+                unsafe { edges::<L, false>(mesh, block, part, &nodes.place, own, L::splat(1.0)) };
             L::put(force, first, pull);
         }
     }

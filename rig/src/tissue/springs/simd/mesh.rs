@@ -109,7 +109,10 @@ pub(in crate::tissue::springs) struct Laid<'a> {
 
 impl Laid<'_> {
     /// Stiffness of each spring to a fibre, and how far that has moved there.
-    pub(in crate::tissue::springs) fn ties(&self, shift: &[Vec3A]) -> impl Iterator<Item = (f32, Vec3A)> {
+    pub(in crate::tissue::springs) fn ties(
+        &self,
+        shift: &[Vec3A],
+    ) -> impl Iterator<Item = (f32, Vec3A)> {
         let l = self.lane;
         self.ties.iter().filter_map(move |tie| {
             let stiffness = tie.here[l] + tie.there[l];
@@ -160,7 +163,10 @@ impl Mesh {
             .iter()
             .all(|r| r.index.iter().all(|i| inside(i, mesh.nodes)))
             && mesh.ties.iter().all(|t| {
-                t.index.iter().chain(&t.next).all(|i| inside(i, points.max(1)))
+                t.index
+                    .iter()
+                    .chain(&t.next)
+                    .all(|i| inside(i, points.max(1)))
             });
         // The passes rely on this: it is what makes their unchecked fetches sound.
         assert!(sound, "a spring ends at a node or point that is not there");
@@ -207,7 +213,9 @@ impl Mesh {
             let end = holds.partition_point(|h| h.node <= node);
             *list = &holds[start..end];
             hold[l] = list.iter().map(|h| h.stiffness).sum();
-            fibres |= list.iter().fold(0_u128, |bits, h| bits | 1 << (h.fibre % 128));
+            fibres |= list
+                .iter()
+                .fold(0_u128, |bits, h| bits | 1 << (h.fibre % 128));
         }
         let ties = self.ties.len() as u32;
         for r in 0..of_lane.iter().map(|list| list.len()).max().unwrap_or(0) {
@@ -215,9 +223,7 @@ impl Mesh {
             self.ties.push(Tie {
                 index: std::array::from_fn(|l| of(l).map_or(0, |h| h.point)),
                 next: std::array::from_fn(|l| of(l).map_or(0, |h| h.point + 1)),
-                here: std::array::from_fn(|l| {
-                    of(l).map_or(0.0, |h| h.stiffness * (1.0 - h.share))
-                }),
+                here: std::array::from_fn(|l| of(l).map_or(0.0, |h| h.stiffness * (1.0 - h.share))),
                 there: std::array::from_fn(|l| of(l).map_or(0.0, |h| h.stiffness * h.share)),
             });
         }
@@ -270,7 +276,8 @@ impl Mesh {
         for (b, block) in self.blocks.iter().enumerate() {
             for l in 0..BLOCK {
                 let rows = &self.rows[block.rows[0] as usize..block.rows[1] as usize];
-                let axis = |of: &[[f32; BLOCK]; 3]| Vec3A::from_array([of[0][l], of[1][l], of[2][l]]);
+                let axis =
+                    |of: &[[f32; BLOCK]; 3]| Vec3A::from_array([of[0][l], of[1][l], of[2][l]]);
                 let node = Laid {
                     lane: l,
                     edges: rows
@@ -292,6 +299,11 @@ impl Mesh {
         }
     }
 
+    /// Bytes of the springs between nodes.
+    pub(in crate::tissue::springs) fn spring_bytes(&self) -> usize {
+        size_of_val(&*self.rows)
+    }
+
     /// Bytes of everything laid out here.
     pub(in crate::tissue::springs) fn bytes(&self) -> usize {
         size_of_val(&*self.blocks)
@@ -307,7 +319,13 @@ impl Mesh {
             nodes.place.len() == self.nodes && nodes.velocity.len() == self.nodes,
             "as many nodes as the mesh was made for"
         );
-        assert_eq!(points, self.points, "as many points as the mesh was made for");
-        assert_eq!(gradients, self.gradients, "one gradient per node of a volume");
+        assert_eq!(
+            points, self.points,
+            "as many points as the mesh was made for"
+        );
+        assert_eq!(
+            gradients, self.gradients,
+            "one gradient per node of a volume"
+        );
     }
 }

@@ -31,14 +31,16 @@ pub(super) use mesh::{Ground, Hold, Mesh, Neighbour};
 
 use crate::tissue::Nodes;
 
-/// Which instructions the passes use.
+/// Which instructions the passes use. None can be named that this processor has not.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Isa {
-    /// What every processor of the target has.
+pub struct Isa(Set);
+
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Set {
     Portable,
-    /// AVX2 with FMA, 8 lanes.
+    #[cfg(target_arch = "x86_64")]
     Avx2,
-    /// AVX-512F, 16 lanes.
+    #[cfg(target_arch = "x86_64")]
     Avx512,
 }
 
@@ -56,29 +58,40 @@ impl Isa {
         #[cfg(target_arch = "x86_64")]
         {
             if is_x86_feature_detected!("avx512f") {
-                all.push(Self::Avx512);
+                all.push(Self(Set::Avx512));
             }
             if is_x86_feature_detected!("avx2") && is_x86_feature_detected!("fma") {
-                all.push(Self::Avx2);
+                all.push(Self(Set::Avx2));
             }
         }
-        all.push(Self::Portable);
+        all.push(Self(Set::Portable));
         all
+    }
+
+    /// How many floats it works on at once.
+    #[must_use]
+    pub fn lanes(self) -> usize {
+        match self.0 {
+            Set::Portable => 4,
+            #[cfg(target_arch = "x86_64")]
+            Set::Avx2 => 8,
+            #[cfg(target_arch = "x86_64")]
+            Set::Avx512 => 16,
+        }
     }
 }
 
 /// Runs `$kernel::<L>($($arg),*)` on the lanes of an [`Isa`].
 macro_rules! on {
     ($isa:expr, $kernel:ident($($arg:expr),*)) => {
-        match $isa {
-            // SAFETY: an `Isa` other than the portable one is only ever made by `Isa::all`, where the
-            // processor has it.
+        match $isa.0 {
+            // SAFETY: only `Isa::all` makes one, where the processor has it.
             #[cfg(target_arch = "x86_64")]
-            Isa::Avx512 => unsafe { avx512::$kernel($($arg),*) },
+            Set::Avx512 => unsafe { avx512::$kernel($($arg),*) },
             #[cfg(target_arch = "x86_64")]
             // SAFETY: as above.
-            Isa::Avx2 => unsafe { avx2::$kernel($($arg),*) },
-            _ => kernel::$kernel::<portable::Four>($($arg),*),
+            Set::Avx2 => unsafe { avx2::$kernel($($arg),*) },
+            Set::Portable => kernel::$kernel::<portable::Four>($($arg),*),
         }
     };
 }
