@@ -1,0 +1,351 @@
+//! Skin in layers (LEE 4 to 8): epidermis, fascia and skull in triangular prisms, muscles in the fascia.
+//!
+//! | module | holds |
+//! |---|---|
+//! | `layers` | where fascia and skull lie under the skin |
+//! | `law` | how strongly a spring pulls: biphasic, with the penalty for compression |
+//! | `springs` | the springs of all layers |
+//! | `volume` | prisms that keep their volume |
+//! | `vectors` | LEE's 26 muscle vectors and their profiles |
+//! | `own` | muscles that he lacks: the orbicularis oris first of all |
+//! | `strength` | how strongly each muscle pulls |
+//!
+//! What LEE leaves open, and what was chosen so that a face answers within some 50 ms and moves about as
+//! far as with the default model:
+//! - Masses: a column's mass is the head's (`TissueRecord`), half of it in the skin, half in the
+//!   fascia; all stiffnesses are per mass. Where a node's springs are too stiff for the step, it counts as heavier, just
+//!   so much that the step is stable ([`INERTIA`]): that slows only what vibrates faster than 70 times a second,
+//!   and changes nothing of where things come to rest. No controls can make it fly apart.
+//! - Step: that of the whole simulation, 480 Hz, or what it is told. Semi-implicit Euler with implicit damping. (LEE calls
+//!   his explicit, but places take the new velocity there too, which is this; damping differs.)
+//! - Damping: [`DAMPING`] for all nodes, on the velocity against the skull.
+//! - Units: one of the stiffness table is 1500 mm/s² (`springs`); `k1`, `k2`: `volume`; forces: `strength`.
+//! - Restoring force `h`: fascia nodes to their places at rest on skull or mandible (by the default model's
+//!   share), softly on cheeks and lips and firmly on nose and hairline, as that model's springs to bone.
+//! - The skull's constraint acts where the fascia has come near the bone; LEE's formula, which has no such
+//!   condition, would keep fascia from ever being pressed.
+//! - Crossed springs between skin and fascia: LEE leaves them out, his own source has them (`springs`).
+//!
+//! Lids are carried as in the default model: no layers of skin close an eye.
+
+mod law;
+mod layers;
+mod own;
+mod springs;
+mod strength;
+mod vectors;
+mod volume;
+
+use glam::{Quat, Vec3, Vec3A, Vec4};
+
+use self::layers::Layers;
+use self::own::Ring;
+use self::springs::Springs;
+use self::vectors::Actuator;
+use self::volume::Prisms;
+use super::anatomy::{LID, bone_stiffness, mandible_share, sides};
+use super::{Drive, Nodes, Numbering, Tissue};
+use crate::{Control, Head, Muscle};
+
+/// Force per mass and velocity, 1/s: about critical for a cheek on its restoring force.
+const DAMPING: f32 = 100.0;
+/// Restoring force of the fascia against the default model's springs to bone, and what it is at least, 1/s².
+const RESTORE: f32 = 0.5;
+const RESTORE_LEAST: f32 = 12_000.0;
+/// A node counts as heavier by this share of its springs' stiffness times the step's square. With a quarter of
+/// twice the sum (Gershgorin's bound of what vibrates) the step would be just stable.
+const INERTIA: f32 = 0.35;
+/// Nothing in a face is faster, mm/s: lips close with some 300.
+const FASTEST_MM_S: f32 = 2_000.0;
+/// The fascia comes no nearer to the bone than this share of its distance at rest.
+const CLEARANCE: f32 = 0.15;
+/// The lids aim past each other by this factor, since the skin round them holds them back.
+const LID_OVERSHOOT: f32 = 1.22;
+/// Columns of lids and lips, more than this, turn with them: they have no upright of their own.
+const TURNS: f32 = 0.15;
+
+/// A column that a lid carries.
+#[derive(Clone, Copy, Debug)]
+struct LidHold {
+    node: u32,
+    /// Of `Head::lids`.
+    lid: u32,
+    /// Per mass, of skin and of fascia.
+    stiffness: f32,
+}
+
+/// A column on bone that the mandible takes along.
+#[derive(Clone, Copy, Debug)]
+struct Jawed {
+    node: u32,
+    share: f32,
+}
+
+/// The layered tissue of a head.
+#[derive(Clone, Debug)]
+pub(crate) struct Layered {
+    movable: usize,
+    skin: Nodes,
+    fascia: Nodes,
+    /// Columns as the springs read them, the rim that stays included; the same at rest.
+    place: Vec<[Vec4; 2]>,
+    force: Vec<[Vec4; 2]>,
+    rest: Vec<[Vec4; 2]>,
+    /// Skull nodes and the fascia's home, at rest and now.
+    skull_rest: Vec<Vec4>,
+    skull: Vec<Vec4>,
+    home: Vec<Vec4>,
+    /// Outwards, and how far the fascia must stay away from its skull node; 0 on lids.
+    out: Vec<Vec4>,
+    clearance: Vec<f32>,
+    restore: Vec<f32>,
+    jawed: Vec<Jawed>,
+    lids: Vec<LidHold>,
+    springs: Springs,
+    prisms: Prisms,
+    actuators: Vec<Actuator>,
+    rings: Vec<Ring>,
+}
+
+impl Layered {
+    pub(crate) fn new(head: &Head, numbering: &Numbering) -> Self {
+        let layers = Layers::new(head, numbering);
+        let movable = numbering.movable;
+        let scale = head.tissue.stiffness_scale();
+        let reference = numbering.of(&head.skin.reference);
+        let side = numbering.of(&sides(head));
+        let mut hold = vec![0.0_f32; head.skin.mesh.positions.len()];
+        for lid in &head.lids {
+            hold[lid.vertex as usize] = lid.hold;
+        }
+        let hold = numbering.of(&hold);
+
+        let four = |p: &Vec3| p.extend(0.0);
+        let columns = layers.skin.iter().zip(&layers.fascia);
+        let rest: Vec<[Vec4; 2]> = columns.map(|(s, f)| [four(s), four(f)]).collect();
+        let skull: Vec<Vec4> = layers.skull[..movable].iter().map(four).collect();
+        let out: Vec<Vec4> = (0..movable)
+            .map(|i| {
+                if layers.tender[i] > TURNS {
+                    Vec4::ZERO
+                } else {
+                    four(&layers.out[i])
+                }
+            })
+            .collect();
+        let clearance = (0..movable)
+            .map(|i| (rest[i][1] - skull[i]).dot(out[i]) * CLEARANCE)
+            .collect();
+        let restore = (0..movable)
+            .map(|i| (bone_stiffness(reference[i], side[i]) * RESTORE).max(RESTORE_LEAST) * scale)
+            .collect();
+        let jawed = (0..movable)
+            .map(|i| Jawed {
+                node: i as u32,
+                share: mandible_share(reference[i], side[i]),
+            })
+            .filter(|j| j.share > 0.0)
+            .collect();
+        let lids = (0..)
+            .zip(&head.lids)
+            .filter_map(|(k, lid)| {
+                Some(LidHold {
+                    node: numbering.moving(lid.vertex)?,
+                    lid: k,
+                    stiffness: LID * lid.hold * lid.hold,
+                })
+            })
+            .collect();
+        let mut actuators = vectors::build(head, &layers, movable, &side, &hold);
+        actuators.extend(own::linear(head, &layers, movable, &side, &hold));
+        Self {
+            movable,
+            skin: Nodes::at(&layers.skin),
+            fascia: Nodes::at(&layers.fascia[..movable]),
+            springs: Springs::new(&numbering.edges, &rest, &skull, movable, scale),
+            prisms: Prisms::new(&layers.triangles, &rest, scale),
+            rings: own::rings(head, &layers, movable, &side, &hold),
+            actuators,
+            place: rest.clone(),
+            force: vec![[Vec4::ZERO; 2]; rest.len()],
+            home: rest[..movable].iter().map(|c| c[1]).collect(),
+            rest,
+            skull_rest: skull.clone(),
+            skull,
+            out,
+            clearance,
+            restore,
+            jawed,
+            lids,
+        }
+    }
+
+    /// Moves bones and what hangs on them, and reads the nodes.
+    fn read(&mut self, drive: &Drive<'_>) {
+        for &Jawed { node, share } in &self.jawed {
+            let i = node as usize;
+            let carried = |p: Vec4| {
+                let p = Vec3A::from_vec4(p);
+                p.lerp(drive.mandible.transform_point3a(p), share)
+                    .extend(0.0)
+            };
+            self.skull[i] = carried(self.skull_rest[i]);
+            self.home[i] = carried(self.rest[i][1]);
+        }
+        for i in 0..self.movable {
+            self.place[i] = [
+                self.skin.place[i].extend(0.0),
+                self.fascia.place[i].extend(0.0),
+            ];
+        }
+    }
+
+    /// Forces of the tissue itself; `volume` scales what keeps its volume.
+    fn resist(&mut self, volume: f32) {
+        self.force[self.movable..].fill([Vec4::ZERO; 2]);
+        self.springs
+            .down(&self.place, &self.skull, &self.out, &mut self.force);
+        self.springs.along_layers(&self.place, &mut self.force);
+        self.prisms.hold(&self.place, volume, &mut self.force);
+        for i in 0..self.movable {
+            let back = (self.home[i] - self.place[i][1]) * self.restore[i];
+            self.force[i][1] += back.with_w(self.restore[i]);
+        }
+    }
+
+    /// Forces of muscles and lids.
+    fn pull(&mut self, drive: &Drive<'_>) {
+        let scale = drive.muscle_stiffness * drive.head.tissue.stiffness_scale();
+        for actuator in &self.actuators {
+            let [a, b] = actuator
+                .muscles
+                .map(|m| drive.state.contraction(m, actuator.left));
+            let contraction = 0.5 * (a + b) * scale;
+            if contraction.abs() < 1e-6 {
+                continue;
+            }
+            for (i, force) in &actuator.forces {
+                self.force[*i as usize][1] += force.extend(0.0) * contraction;
+            }
+        }
+        for ring in &self.rings {
+            ring.pull(
+                drive.state,
+                &drive.mandible,
+                scale,
+                &self.place,
+                &mut self.force,
+            );
+        }
+        for hold in &self.lids {
+            let lid = drive.head.lids[hold.lid as usize];
+            let (eye, closed) = if lid.left {
+                (&drive.head.eyes[0], drive.state[Control::LidL])
+            } else {
+                (&drive.head.eyes[1], drive.state[Control::LidR])
+            };
+            let muscle = drive
+                .state
+                .contraction(Muscle::OrbicularisOculiPalpebral, lid.left)
+                * drive.muscle_stiffness.min(1.0);
+            let closed = 1.0 - (1.0 - closed) * (1.0 - muscle);
+            let follow = if lid.turn < 0.0 {
+                0.55 * lid.hold * (1.0 - closed)
+            } else {
+                0.0
+            };
+            let gaze = follow * drive.state[Control::GazePitch];
+            let turn = Quat::from_rotation_x(-(lid.turn * closed * LID_OVERSHOOT + gaze));
+            let i = hold.node as usize;
+            let centre = Vec3A::from(eye.centre);
+            for layer in 0..2 {
+                let home = Vec3A::from_vec4(self.rest[i][layer]);
+                let target = centre + turn.mul_vec3a(home - centre);
+                let back = (target.extend(0.0) - self.place[i][layer]) * hold.stiffness;
+                self.force[i][layer] += back.with_w(hold.stiffness);
+            }
+        }
+    }
+
+    /// Semi-implicit Euler; the rim stays.
+    fn integrate(&mut self, step_s: f32, damping: f32) {
+        let heavier = INERTIA * step_s * step_s;
+        let advance = |force: Vec4, place: &mut Vec3A, velocity: &mut Vec3A| {
+            let mass = (force.w * heavier).max(1.0);
+            let force = Vec3A::from_vec4(force);
+            *velocity = (*velocity * mass + force * step_s) / (mass + damping * step_s);
+            *velocity = velocity.clamp_length_max(FASTEST_MM_S);
+            *place += *velocity * step_s;
+        };
+        for i in 0..self.movable {
+            let [skin, fascia] = self.force[i];
+            advance(skin, &mut self.skin.place[i], &mut self.skin.velocity[i]);
+
+            // Fascia that has come near the bone slides on it.
+            let normal = Vec3A::from_vec4(self.out[i]);
+            let place = &mut self.fascia.place[i];
+            let gap =
+                |p: Vec3A| (p - Vec3A::from_vec4(self.skull[i])).dot(normal) - self.clearance[i];
+            let inwards = Vec3A::from_vec4(fascia).dot(normal).min(0.0);
+            let met = gap(*place) <= 0.0;
+            let kept = if met { normal * inwards } else { Vec3A::ZERO };
+            advance(
+                fascia - kept.extend(0.0),
+                place,
+                &mut self.fascia.velocity[i],
+            );
+            let deep = gap(*place).min(0.0);
+            if deep < 0.0 {
+                *place -= normal * deep;
+                let velocity = &mut self.fascia.velocity[i];
+                *velocity -= normal * velocity.dot(normal).min(0.0);
+            }
+        }
+    }
+}
+
+impl Tissue for Layered {
+    fn step(&mut self, drive: &Drive<'_>) {
+        self.read(drive);
+        self.resist(drive.volume);
+        self.pull(drive);
+        self.integrate(drive.step_s, DAMPING * drive.damping);
+    }
+
+    fn skin(&self) -> &Nodes {
+        &self.skin
+    }
+
+    fn skin_mut(&mut self) -> &mut Nodes {
+        &mut self.skin
+    }
+
+    fn inner(&self) -> Option<&Nodes> {
+        Some(&self.fascia)
+    }
+
+    fn inner_mut(&mut self) -> Option<&mut Nodes> {
+        Some(&mut self.fascia)
+    }
+
+    fn reset_inner(&mut self) {
+        for (i, place) in self.fascia.place.iter_mut().enumerate() {
+            *place = Vec3A::from_vec4(self.rest[i][1]);
+        }
+        self.fascia.velocity.fill(Vec3A::ZERO);
+    }
+
+    fn bytes(&self) -> usize {
+        2 * size_of_val(&*self.skin.place)
+            + 2 * size_of_val(&*self.fascia.place)
+            + 3 * size_of_val(&*self.place)
+            + 4 * size_of_val(&*self.skull)
+            + 2 * size_of_val(&*self.restore)
+            + self.springs.bytes()
+            + self.prisms.bytes()
+    }
+
+    fn spring_count(&self) -> usize {
+        self.springs.count() + self.restore.len() + self.lids.len()
+    }
+}
