@@ -5,7 +5,7 @@
 
 mod rays;
 
-use glam::Vec3;
+use glam::{Vec2, Vec3, vec2};
 
 use crate::muscle::{MuscleSurfaces, Muscles};
 use crate::tissue::spring_lines;
@@ -60,17 +60,39 @@ const BAR_MM: [f32; 3] = [0.16, 0.22, 0.20];
 /// with the skin left out. Parts that are drawn only with a face are as they were.
 #[must_use]
 pub fn undressed(head: &Head, frame: &KeyFrame, what: Anatomy) -> Vec<Part> {
-    let mut parts: Vec<Part> = head.parts.iter().map(smooth).collect();
+    let mut parts: Vec<Part> = head.parts.iter().map(bared).collect();
     match what {
         Anatomy::Skull => {}
         Anatomy::Muscles => parts.extend(muscles(head, frame)),
         Anatomy::Springs => parts.push(springs(head, frame)),
     }
     darken(head, frame, &mut parts);
+    if what == Anatomy::Springs {
+        // Springs are seen best against dark.
+        for part in parts.iter_mut().filter(|p| p.material == Material::Bone) {
+            part.mesh.uvs.iter_mut().for_each(|uv| uv.y = 1.0);
+        }
+    }
     parts
 }
 
-/// A bone's limit surface; other parts as they are.
+/// A part as it looks without skin: bones smooth, teeth standing in bone where there were gums.
+fn bared(part: &Part) -> Part {
+    let as_bone = |enamel: f32| {
+        let mut part = part.clone();
+        part.material = Material::Bone;
+        part.mesh.uvs.fill(vec2(enamel, 0.0));
+        part
+    };
+    match part.material {
+        Material::Bone => smooth(part),
+        Material::Gums => as_bone(0.0),
+        Material::Teeth => as_bone(1.0),
+        _ => part.clone(),
+    }
+}
+
+/// A bone's limit surface.
 fn smooth(part: &Part) -> Part {
     let mesh = &part.mesh;
     let topology = Topology {
@@ -83,9 +105,6 @@ fn smooth(part: &Part) -> Part {
         rest: &mesh.positions,
         ..Detail::default()
     };
-    if part.material != Material::Bone {
-        return part.clone();
-    }
     let Ok(surface) = Subdivision::new(&topology, &detail) else {
         return part.clone();
     };
@@ -95,7 +114,7 @@ fn smooth(part: &Part) -> Part {
     Part {
         mesh: Mesh {
             normals: normals(&positions, &triangles),
-            uvs: vec![glam::Vec2::ZERO; positions.len()],
+            uvs: vec![Vec2::ZERO; positions.len()],
             occlusion: vec![1.0; positions.len()],
             triangles,
             positions,
@@ -124,7 +143,7 @@ fn springs(head: &Head, frame: &KeyFrame) -> Part {
         let along = (line.b - line.a).normalize_or(Vec3::Z);
         let (u, v) = along.any_orthonormal_pair();
         let base = mesh.positions.len() as u32;
-        let uv = glam::vec2(f32::from(line.kind as u8), line.strain);
+        let uv = vec2(f32::from(line.kind as u8), line.strain);
         for end in [line.a, line.b] {
             for k in 0..3 {
                 let (s, c) = (std::f32::consts::TAU * k as f32 / 3.0).sin_cos();
@@ -154,16 +173,11 @@ fn still(name: &str, material: Material, mesh: Mesh) -> Part {
     }
 }
 
-/// Works out how much light reaches bones, teeth and muscles in this pose.
+/// Works out how much light reaches bones and muscles in this pose.
 fn darken(head: &Head, frame: &KeyFrame, parts: &mut [Part]) {
     let bodies = head.bodies(&frame.state);
     let skull = bodies[Body::Skull as usize].inverse();
-    let solid = |m: Material| {
-        matches!(
-            m,
-            Material::Bone | Material::Muscle | Material::Teeth | Material::Eye
-        )
-    };
+    let solid = |m: Material| matches!(m, Material::Bone | Material::Muscle | Material::Eye);
     // Where everything is in the skull's frame.
     let posed: Vec<(Vec<Vec3>, Vec<Vec3>)> = parts
         .iter()
@@ -190,10 +204,7 @@ fn darken(head: &Head, frame: &KeyFrame, parts: &mut [Part]) {
         .map(|(part, (places, _))| (&places[..], &part.mesh.triangles[..]));
     let rays = Rays::new(stops);
     for (part, (places, normals)) in parts.iter_mut().zip(&posed) {
-        if !matches!(
-            part.material,
-            Material::Bone | Material::Muscle | Material::Teeth
-        ) {
+        if !matches!(part.material, Material::Bone | Material::Muscle) {
             continue;
         }
         part.mesh.occlusion = places

@@ -60,7 +60,8 @@ pub enum Material {
     /// Lashes and brows.
     Lash,
     Cloth,
-    /// Skull and mandible: drawn only where asked for.
+    /// Skull and mandible: drawn only where asked for; `uv` is how much it is a tooth, and how much it is
+    /// to stand back behind what is drawn over it, 0..1 both.
     Bone,
     /// A muscle's surface, drawn only where asked for; `uv` is the place along the fibres, 0 to 1 over the
     /// flesh and beyond it in tendon, and the place across them, mm.

@@ -4,12 +4,15 @@
 #include "anatomy"
 
 // Height of the bundles' relief at a place across the fibres, 0..1: bundles of some millimetres, fibres in them.
-fn bundles(across: f32, along: f32) -> f32 {
-    let drift = (value_noise(vec2(across * 0.35, along * 5.0)) - 0.5) * 0.8;
-    let a = value_noise(vec2((across + drift) * 0.75, along * 2.0 + 7.0));
-    let b = value_noise(vec2((across + drift) * 1.9, along * 3.5));
-    let c = value_noise(vec2(across * 4.6, along * 6.0 + 3.0));
-    return 0.42 * a + 0.36 * b + 0.22 * c;
+// What is finer than `width` mm, the picture's own grain, is left out.
+fn bundles(across: f32, along: f32, width: f32) -> f32 {
+    let drift = (value_noise(vec2(across * 0.30, along * 4.0)) - 0.5) * 0.9;
+    let at = across + drift;
+    let a = value_noise(vec2(at * 0.55, along * 1.5 + 7.0)) - 0.5;
+    let b = value_noise(vec2(at * 1.3, along * 2.5)) - 0.5;
+    let c = value_noise(vec2(at * 2.9, along * 4.0 + 3.0)) - 0.5;
+    let seen = 1.0 - smoothstep(vec3(0.25), vec3(0.8), width * vec3(0.55, 1.3, 2.9));
+    return 0.5 + 0.42 * a * seen.x + 0.40 * b * seen.y + 0.32 * c * seen.z;
 }
 
 @fragment
@@ -17,7 +20,8 @@ fn muscle(in: AnatomyFragment) -> @location(0) vec4<f32> {
     var n = normalize(in.normal);
     let along = in.uv.x;
     let across = in.uv.y;
-    let height = bundles(across, along);
+    let width = fwidth(across);
+    let height = bundles(across, along, width);
 
     // Which way across the fibres is on the surface, from how uv changes over the picture.
     let px = dpdx(in.world);
@@ -28,21 +32,20 @@ fn muscle(in: AnatomyFragment) -> @location(0) vec4<f32> {
     let slope = (cross(py, area) * vx + cross(area, px) * vy) / max(dot(area, area), 1e-12);
     let side = normalize(slope + vec3(1e-6));
     let d = 0.06;
-    let rise = (bundles(across + d, along) - bundles(across - d, along)) / (2.0 * d);
+    let rise = (bundles(across + d, along, width) - bundles(across - d, along, width)) / (2.0 * d);
 
     // Flesh runs into tendon in streaks of its own length each.
     let streak = (value_noise(vec2(across * 1.6, 41.0)) - 0.5) * 0.16 + (value_noise(vec2(across * 5.0, 17.0)) - 0.5) * 0.06;
     let beyond = max(-along, along - 1.0) + streak;
     let tendon = smoothstep(-0.07, 0.05, beyond);
 
-    n = normalize(n - side * rise * mix(0.55, 0.22, tendon));
-    let deep = vec3(0.150, 0.026, 0.020);
-    let flesh = vec3(0.40, 0.098, 0.066);
-    let pale = vec3(0.54, 0.235, 0.165);
-    var red = mix(deep, flesh, smoothstep(0.18, 0.55, height));
-    red = mix(red, pale, smoothstep(0.62, 0.86, height) * 0.7);
-    let silk = mix(vec3(0.56, 0.46, 0.335), vec3(0.80, 0.73, 0.60), smoothstep(0.25, 0.75, height));
+    n = normalize(n - side * rise * mix(0.85, 0.35, tendon));
+    let deep = vec3(0.085, 0.0125, 0.010);
+    let flesh = vec3(0.235, 0.050, 0.034);
+    let pale = vec3(0.38, 0.135, 0.088);
+    var red = mix(deep, flesh, smoothstep(0.28, 0.56, height));
+    red = mix(red, pale, smoothstep(0.58, 0.82, height) * 0.65);
+    let silk = mix(vec3(0.47, 0.365, 0.25), vec3(0.72, 0.635, 0.50), smoothstep(0.3, 0.7, height));
     let albedo = mix(red, silk, tendon);
-    let colour = lit(in.world, n, albedo, in.occlusion, mix(0.42, 0.36, tendon), 0.035, mix(0.22, 0.12, tendon));
-    return developed(colour);
+    return developed(lit(in.world, n, albedo, in.occlusion, mix(0.46, 0.38, tendon), 0.026, mix(0.20, 0.10, tendon)));
 }

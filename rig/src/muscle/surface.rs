@@ -7,8 +7,8 @@
 //! one whose fibres keep their length bulges by as far as they have come out. Widths, thicknesses and
 //! lengths of tendon are in `shape`. Skin does not feel these surfaces: it hangs on the fibres.
 
-mod sheet;
 mod shape;
+mod sheet;
 
 use glam::Vec3;
 

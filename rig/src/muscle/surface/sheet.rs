@@ -8,7 +8,7 @@ use std::ops::Range;
 
 use glam::{Vec2, Vec3, vec2};
 
-use super::shape::{self, Shape, along};
+use super::shape::{self, HIDDEN_MM, Shape, along};
 use super::{Belly, enclosed_volume};
 use crate::anatomy::Rays;
 use crate::mesh::normals;
@@ -25,14 +25,19 @@ const ACROSS_PER_FIBRE: usize = 6;
 const PIECES: usize = 10;
 /// Ends of a control polygon nearer than this are one, mm.
 const JOINED_MM: f32 = 0.5;
-/// Bone is looked for from this far over the sheet, mm.
+/// Bone is looked for from this far over the sheet to that far under it, mm.
 const OVER_MM: f32 = 6.0;
+const UNDER_MM: f32 = 15.0;
+/// Rounds of smoothing how a sheet lies on bone.
+const SMOOTHING: usize = 12;
 /// How much thicker or thinner than at rest a muscle may be drawn, and a sphincter: fibres that close on
 /// a point would make a ball.
 const SWELLING: Range<f32> = 0.4..3.0;
 const SWELLING_ROUND: Range<f32> = 0.7..1.8;
 /// Rounds of fitting the thickness to the volume; each leaves a few per cent of the error.
 const ROUNDS: usize = 5;
+/// Share of a fan's length that its round edge draws on.
+const ROUNDED: f32 = 0.7;
 
 /// Fibres that form one surface.
 #[derive(Clone, Debug)]
@@ -106,6 +111,7 @@ impl Sheet {
             .map(|(p, n)| n.dot(-inwards(*p)))
             .sum();
         sheet.out = if facing < 0.0 { -1.0 } else { 1.0 };
+        let middle = sheet.middle(rest, 1.0);
         sheet.bow = sheet.bows(&middle);
         sheet.lift = sheet.lifts(&middle, bones);
         sheet.uvs = sheet.uvs(&middle, number);
@@ -186,7 +192,14 @@ impl Sheet {
         let curves: Vec<Vec<Vec3>> = self
             .fibres
             .iter()
-            .map(|f| curve(&points[f.clone()], self.closed, self.rings))
+            .map(|f| {
+                let beyond = if self.closed {
+                    [0.0; 2]
+                } else {
+                    self.shape.beyond
+                };
+                curve(&longer(&points[f.clone()], beyond), self.closed, self.rings)
+            })
             .collect();
         let mut middle = Middle {
             places: Vec::with_capacity(self.rings * self.across),
@@ -214,9 +227,9 @@ impl Sheet {
                 ),
             };
             knots.clear();
-            knots.push(first + left * beside);
+            knots.push(first + left * (beside * (1.0 - self.shape.lean)));
             knots.extend(curves.iter().map(|c| c[ring]));
-            knots.push(last + right * beside);
+            knots.push(last + right * (beside * (1.0 + self.shape.lean)));
             let width: f32 = knots.windows(2).map(|w| w[0].distance(w[1])).sum();
             middle.half.push(0.5 * width);
             for j in 0..self.across {
@@ -228,6 +241,7 @@ impl Sheet {
                 middle.across.push(2.0 * share - 1.0);
             }
         }
+        self.round_off(&mut middle);
         for ring in 0..self.rings {
             let (before, after) = self.neighbours(ring);
             for j in 0..self.across {
@@ -238,6 +252,22 @@ impl Sheet {
             }
         }
         middle
+    }
+
+    /// Draws the origin of a fan out to a round edge.
+    fn round_off(&self, middle: &mut Middle) {
+        if self.closed || self.shape.round == 0.0 {
+            return;
+        }
+        for j in 0..self.across {
+            let back = (middle.places[j] - middle.places[j + self.across]).normalize_or_zero();
+            for ring in 0..self.rings {
+                let k = ring * self.across + j;
+                let near = (1.0 - self.along(ring) / ROUNDED).max(0.0);
+                let out = self.shape.round * near * near * (1.0 - middle.across[k].powi(2));
+                middle.places[k] += back * out;
+            }
+        }
     }
 
     fn neighbours(&self, ring: usize) -> (usize, usize) {
@@ -273,23 +303,26 @@ impl Sheet {
             .collect()
     }
 
-    /// How far the grid must come out at rest so that its outer half is clear of bone.
+    /// How far the grid comes out at rest: so far that its outer half is clear of bone, or, below 0, so deep
+    /// as it is seated on bone or lies under its neighbours.
     fn lifts(&self, middle: &Middle, bones: &Rays) -> Vec<f32> {
-        let raw: Vec<f32> = (0..middle.places.len())
+        let clear = self.over_bone(middle, bones);
+        let raw: Vec<f32> = (0..clear.len())
             .map(|k| {
-                let (p, n) = (middle.places[k], middle.normals[k]);
-                let half = self.half_thickness(k / self.across, middle.across[k]);
-                let free = bones.free(p + n * OVER_MM, -n, OVER_MM + half);
-                if free >= OVER_MM + half {
-                    0.0
-                } else {
-                    (OVER_MM - free + 0.4 * half).max(0.0)
+                let u = self.from_end(k / self.across);
+                let sink = along(self.shape.sink, u);
+                match clear[k] {
+                    Some(clear) if clear > -sink && sink < HIDDEN_MM => clear,
+                    Some(clear) if clear < -sink => {
+                        -sink + (clear + sink) * along(self.shape.seat, u)
+                    }
+                    _ => -sink,
                 }
             })
             .collect();
         // Over the whole sheet smooth: bone has edges, muscle bridges them.
         let mut lift = raw.clone();
-        for _ in 0..4 {
+        for _ in 0..SMOOTHING {
             lift = (0..lift.len())
                 .map(|k| {
                     let (ring, j) = (k / self.across, k % self.across);
@@ -299,11 +332,49 @@ impl Sheet {
                         + at(after, j)
                         + at(ring, j.saturating_sub(1))
                         + at(ring, (j + 1).min(self.across - 1));
-                    (0.5 * at(ring, j) + 0.125 * sum).max(0.8 * raw[k])
+                    let floor = if raw[k] > 0.0 { 0.8 * raw[k] } else { f32::MIN };
+                    (0.5 * at(ring, j) + 0.125 * sum).max(floor)
                 })
                 .collect();
         }
         lift
+    }
+
+    /// How far each place of the grid would have to move out to lie on the bone, less below it than half of
+    /// the flesh; where there is no bone under it, as its neighbours do.
+    fn over_bone(&self, middle: &Middle, bones: &Rays) -> Vec<Option<f32>> {
+        let mut clear: Vec<Option<f32>> = (0..middle.places.len())
+            .map(|k| {
+                let (p, n) = (middle.places[k], middle.normals[k]);
+                let half = self.half_thickness(k / self.across, middle.across[k]);
+                let free = bones.free(p + n * OVER_MM, -n, OVER_MM + UNDER_MM);
+                (free < OVER_MM + UNDER_MM).then_some(OVER_MM - free + 0.4 * half)
+            })
+            .collect();
+        for _ in 0..self.rings {
+            if clear.iter().all(Option::is_some) {
+                break;
+            }
+            clear = (0..clear.len())
+                .map(|k| {
+                    let (ring, j) = (k / self.across, k % self.across);
+                    let (before, after) = self.neighbours(ring);
+                    let beside = [
+                        (before, j),
+                        (after, j),
+                        (ring, j.saturating_sub(1)),
+                        (ring, (j + 1).min(self.across - 1)),
+                    ];
+                    let known = beside
+                        .iter()
+                        .filter_map(|(ring, j)| clear[ring * self.across + j]);
+                    let (sum, count) = known.fold((0.0, 0), |(s, n), v| (s + v, n + 1));
+                    // Bone that ends does not draw up what goes on beyond it.
+                    clear[k].or((count > 0).then(|| (sum / count as f32).min(0.0)))
+                })
+                .collect();
+        }
+        clear
     }
 
     /// The closed surface's places: loop by loop, then the middles of the two ends.
@@ -420,6 +491,15 @@ impl Sheet {
 
 /// How far from its end flesh without tendon is said to begin.
 const CLEAR: f32 = 0.25;
+
+/// A control polygon that goes on straight beyond its ends, mm.
+fn longer(polygon: &[Vec3], [before, after]: [f32; 2]) -> Vec<Vec3> {
+    let mut out = polygon.to_vec();
+    let last = out.len() - 1;
+    out[0] += (polygon[0] - polygon[1]).normalize_or_zero() * before;
+    out[last] += (polygon[last] - polygon[last - 1]).normalize_or_zero() * after;
+    out
+}
 
 /// A smooth curve through a control polygon, as places at equal distances along it.
 fn curve(polygon: &[Vec3], closed: bool, count: usize) -> Vec<Vec3> {
