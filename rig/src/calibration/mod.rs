@@ -1,20 +1,31 @@
 //! From what a mouth should do to what its muscles must do, for one head.
 //!
+//! | module | holds |
+//! |---|---|
+//! | `fit` | how a head's mouth answers to its muscles, learnt from its own simulation |
+//! | `reach` | what of an articulation a head cannot do, and by how much |
+//! | `verify` | whether postures come out as wanted, tried with everything on |
+//!
 //! [`Calibration::fit`] lets the head's own simulation settle on a spread of control values with lip
 //! contact off (so that a target past contact means pressure), and fits the measured mouth as a full
 //! quadratic in them. [`Calibration::controls`] then looks for the controls whose fitted mouth comes
-//! nearest to an [`Articulation`], within their ranges and with as little muscle as will do: bounded
-//! Gauss-Newton with cyclic coordinate descent inside. The reference head's fit is carried as data.
+//! nearest to an [`Articulation`], within their ranges and with as little muscle as will do: bounded,
+//! held-back Gauss-Newton with cyclic coordinate descent inside. The reference head's fit is carried as data.
 //!
 //! It drives the five muscles that speech decides by (HABER 5.2 names no five: the two halves of the
 //! orbicularis oris, levator labii superioris, risorius, depressor labii inferioris) and the
 //! protrusion of the first two. Jaw and tongue are passed through.
 
-use std::sync::Arc;
+mod fit;
+mod reach;
+mod verify;
 
 use serde::{Deserialize, Serialize};
 
-use crate::{Articulation, Control, Controls, Head, KeyFrame, Simulation, measure};
+pub use reach::{Measure, Miss, Reach};
+pub use verify::{MeasureError, Verification};
+
+use crate::{Articulation, Control, Controls};
 
 /// What is solved for, and the range the fit is sound in.
 const SOLVED: [(Control, f32, f32); 7] = [
@@ -33,14 +44,17 @@ const VARIABLES: usize = SOLVED.len() + 1;
 const TERMS: usize = 1 + VARIABLES + VARIABLES * (VARIABLES + 1) / 2;
 /// Aperture, width, protrusion, lip to teeth.
 const MEASURES: usize = 4;
-/// Postures that the fit is made from, and how long each is left to settle.
-const SAMPLES: usize = 200;
-const SETTLE_STEPS: usize = 170;
 /// Weight of a measure's error (per mm) and of a muscle's effort.
 const WEIGHTS: [f32; MEASURES] = [1.0, 0.45, 0.8, 0.9];
 const EFFORT: [f32; SOLVED.len()] = [0.5, 0.5, 1.6, 1.0, 1.6, 0.3, 0.3];
 /// Weight that keeps both halves of the orbicularis oris alike in contraction and in protrusion.
 const ALIKE: f32 = 1.2;
+/// Which of the solved are those halves.
+const PAIRS: [(usize, usize); 2] = [(0, 1), (5, 6)];
+/// Steps towards a posture, what holds the first of them back, and the least that does.
+const IMPROVEMENTS: usize = 40;
+const HOLD: f32 = 8.0;
+const HOLD_MIN: f32 = 1.0;
 
 /// A calibration that cannot be read.
 #[derive(Debug, thiserror::Error)]
@@ -110,68 +124,28 @@ impl Calibration {
         other
     }
 
-    /// Fits `head`: some seconds of work.
-    #[must_use]
-    pub fn fit(head: &Arc<Head>) -> Self {
-        let done = Self::fit_reporting(head, |_, _| Ok::<(), std::convert::Infallible>(()));
-        match done {
-            Ok(calibration) => calibration,
-            Err(never) => match never {},
-        }
-    }
-
-    /// As [`Self::fit`]; calls `progress` with the postures done and all of them, and ends early
-    /// with its error.
-    ///
-    /// # Errors
-    /// Only those of `progress`.
-    pub fn fit_reporting<E>(
-        head: &Arc<Head>,
-        mut progress: impl FnMut(usize, usize) -> Result<(), E>,
-    ) -> Result<Self, E> {
-        let mut simulation = Simulation::new(Arc::clone(head));
-        simulation.set_lip_contact(false);
-        let rest = head.rest_frame();
-        let mut frame = rest.clone();
-        let mut rows = Vec::with_capacity(SAMPLES);
-        let mut values = [const { Vec::new() }; MEASURES];
-        for sample in 0..SAMPLES {
-            progress(sample, SAMPLES)?;
-            let x = posture(sample);
-            simulation.restore(&rest);
-            for _ in 0..SETTLE_STEPS {
-                simulation.step(&controls_of(&x));
-            }
-            simulation.save(&mut frame);
-            rows.push(terms(&x));
-            for (list, value) in values.iter_mut().zip(measured(head, &frame)) {
-                list.push(value);
-            }
-        }
-        let rest_width_mm = measure(head, &rest).width_mm;
-        Ok(Self {
-            rest_width_mm,
-            quadratics: values.map(|v| least_squares(&rows, &v)),
-        })
-    }
-
     /// The muscles for a posture: lips by the fit, jaw and tongue as they are.
     #[must_use]
     pub fn controls(&self, articulation: &Articulation) -> Controls {
+        let articulation = &bounded(articulation);
         let mut x = [0.0; VARIABLES];
-        x[SOLVED.len()] = articulation.jaw_rad.clamp(0.0, JAW_MAX);
-        let wanted = [
-            articulation.aperture_mm,
-            articulation.width * self.rest_width_mm,
-            articulation.protrusion_mm,
-            articulation.lip_teeth_mm.unwrap_or(0.0),
-        ];
+        x[SOLVED.len()] = articulation.jaw_rad.min(JAW_MAX);
+        let wanted = self.wanted(articulation);
         let mut weights = WEIGHTS;
         if articulation.lip_teeth_mm.is_none() {
             weights[3] = 0.0;
         }
-        for _ in 0..24 {
-            self.improve(&mut x, &wanted, &weights);
+        // Levenberg and Marquardt's way: held back the more the less a step helps, so that a target out of reach
+        // ends at the nearest posture instead of to and fro, and one a little beside it a little beside that.
+        let (mut hold, mut cost) = (HOLD, self.cost(&x, &wanted, &weights));
+        for _ in 0..IMPROVEMENTS {
+            let there = self.improved(&x, &wanted, &weights, hold);
+            let better = self.cost(&there, &wanted, &weights);
+            if better < cost {
+                (x, cost, hold) = (there, better, (hold * 0.5).max(HOLD_MIN));
+            } else {
+                hold *= 4.0;
+            }
         }
         let mut controls = controls_of(&x);
         controls[Control::Jaw] = articulation.jaw_rad;
@@ -192,6 +166,16 @@ impl Calibration {
         self.value(&x)
     }
 
+    /// An articulation's measures, mm; one that does not matter counts as 0.
+    fn wanted(&self, articulation: &Articulation) -> [f32; MEASURES] {
+        [
+            articulation.aperture_mm,
+            articulation.width * self.rest_width_mm,
+            articulation.protrusion_mm,
+            articulation.lip_teeth_mm.unwrap_or(0.0),
+        ]
+    }
+
     fn value(&self, x: &[f32; VARIABLES]) -> [f32; MEASURES] {
         let terms = terms(x);
         std::array::from_fn(|m| {
@@ -203,13 +187,30 @@ impl Calibration {
         })
     }
 
-    /// One damped Gauss-Newton step on the solved controls.
-    fn improve(
+    /// What is made as small as can be: squares of what is missed, of muscle, of differences between the lips.
+    fn cost(
         &self,
-        x: &mut [f32; VARIABLES],
+        x: &[f32; VARIABLES],
         wanted: &[f32; MEASURES],
         weights: &[f32; MEASURES],
-    ) {
+    ) -> f32 {
+        let now = self.value(x);
+        let missed: f32 = (0..MEASURES)
+            .map(|m| (weights[m] * (wanted[m] - now[m])).powi(2))
+            .sum();
+        let effort: f32 = x.iter().zip(EFFORT).map(|(x, e)| e * x * x).sum();
+        let unlike: f32 = PAIRS.iter().map(|&(a, b)| (x[a] - x[b]).powi(2)).sum();
+        missed + effort + ALIKE * unlike
+    }
+
+    /// A Gauss-Newton step on the solved controls; `hold` keeps it short.
+    fn improved(
+        &self,
+        x: &[f32; VARIABLES],
+        wanted: &[f32; MEASURES],
+        weights: &[f32; MEASURES],
+        hold: f32,
+    ) -> [f32; VARIABLES] {
         const N: usize = SOLVED.len();
         const STEP: f32 = 1e-3;
         let now = self.value(x);
@@ -230,10 +231,10 @@ impl Calibration {
             slope[i] = (0..MEASURES)
                 .map(|m| weights[m].powi(2) * slopes[i][m] * (wanted[m] - now[m]))
                 .sum();
-            gram[i][i] += EFFORT[i];
+            gram[i][i] += EFFORT[i] + hold;
             slope[i] -= EFFORT[i] * x[i];
         }
-        for (a, b) in [(0, 1), (5, 6)] {
+        for (a, b) in PAIRS {
             gram[a][a] += ALIKE;
             gram[b][b] += ALIKE;
             gram[a][b] -= ALIKE;
@@ -242,7 +243,7 @@ impl Calibration {
             slope[b] -= ALIKE * (x[b] - x[a]);
         }
         let mut step = [0.0_f32; N];
-        for _ in 0..40 {
+        for _ in 0..30 {
             for i in 0..N {
                 let rest: f32 = (0..N)
                     .filter(|&j| j != i)
@@ -252,9 +253,37 @@ impl Calibration {
                 step[i] = ((slope[i] - rest) / gram[i][i]).clamp(low - x[i], high - x[i]);
             }
         }
-        for (value, change) in x.iter_mut().zip(step) {
-            *value += 0.7 * change;
+        let mut there = *x;
+        for (value, change) in there.iter_mut().zip(step) {
+            *value += change;
         }
+        there
+    }
+}
+
+/// The articulation within bounds that no mouth leaves; what is no number is as at rest.
+fn bounded(a: &Articulation) -> Articulation {
+    let within = |value: f32, low: f32, high: f32, rest: f32| {
+        if value.is_finite() {
+            value.clamp(low, high)
+        } else {
+            rest
+        }
+    };
+    let rest = Articulation::REST;
+    Articulation {
+        aperture_mm: within(a.aperture_mm, -10.0, 40.0, rest.aperture_mm),
+        width: within(a.width, 0.4, 1.6, rest.width),
+        protrusion_mm: within(a.protrusion_mm, -6.0, 12.0, rest.protrusion_mm),
+        lip_teeth_mm: a
+            .lip_teeth_mm
+            .filter(|mm| mm.is_finite())
+            .map(|mm| mm.clamp(-3.0, 30.0)),
+        jaw_rad: {
+            let (low, high) = Control::Jaw.range();
+            within(a.jaw_rad, low, high, rest.jaw_rad)
+        },
+        tongue: a.tongue,
     }
 }
 
@@ -265,28 +294,6 @@ fn controls_of(x: &[f32; VARIABLES]) -> Controls {
     }
     controls[Control::Jaw] = x[SOLVED.len()];
     controls
-}
-
-/// The n-th posture of a Halton sequence over the fit's ranges; the first is the head at rest.
-fn posture(n: usize) -> [f32; VARIABLES] {
-    const PRIMES: [usize; VARIABLES] = [2, 3, 5, 7, 11, 13, 17, 19];
-    if n == 0 {
-        return [0.0; VARIABLES];
-    }
-    std::array::from_fn(|i| {
-        let (low, high) = SOLVED
-            .get(i)
-            .map_or((0.0, JAW_MAX), |&(_, low, high)| (low, high));
-        let (mut rest, mut scale, mut share) = (n + 20, 1.0, 0.0);
-        while rest > 0 {
-            scale /= PRIMES[i] as f32;
-            share += scale * (rest % PRIMES[i]) as f32;
-            rest /= PRIMES[i];
-        }
-        // Denser towards the relaxed end: muscles are rarely all hard at work.
-        let share = if low < 0.0 { share } else { share * share };
-        low + (high - low) * share
-    })
 }
 
 fn terms(x: &[f32; VARIABLES]) -> [f32; TERMS] {
@@ -300,44 +307,4 @@ fn terms(x: &[f32; VARIABLES]) -> [f32; TERMS] {
         }
     }
     terms
-}
-
-fn measured(head: &Head, frame: &KeyFrame) -> [f32; MEASURES] {
-    let m = measure(head, frame);
-    [m.aperture_mm, m.width_mm, m.protrusion_mm, m.lip_teeth_mm]
-}
-
-/// Least squares by normal equations and Cholesky, with a trace of ridge; in f64.
-fn least_squares(rows: &[[f32; TERMS]], values: &[f32]) -> Vec<f32> {
-    const RIDGE: f64 = 1e-4;
-    let mut a = vec![[0.0_f64; TERMS]; TERMS];
-    let mut b = [0.0_f64; TERMS];
-    for (row, value) in rows.iter().zip(values) {
-        for i in 0..TERMS {
-            b[i] += f64::from(row[i]) * f64::from(*value);
-            for j in 0..TERMS {
-                a[i][j] += f64::from(row[i]) * f64::from(row[j]);
-            }
-        }
-    }
-    for (i, row) in a.iter_mut().enumerate() {
-        row[i] += RIDGE;
-    }
-    for i in 0..TERMS {
-        for j in 0..=i {
-            let sum: f64 = a[i][j] - (0..j).map(|k| a[i][k] * a[j][k]).sum::<f64>();
-            a[i][j] = if i == j {
-                sum.max(1e-12).sqrt()
-            } else {
-                sum / a[j][j]
-            };
-        }
-    }
-    for i in 0..TERMS {
-        b[i] = (b[i] - (0..i).map(|k| a[i][k] * b[k]).sum::<f64>()) / a[i][i];
-    }
-    for i in (0..TERMS).rev() {
-        b[i] = (b[i] - (i + 1..TERMS).map(|k| a[k][i] * b[k]).sum::<f64>()) / a[i][i];
-    }
-    b.iter().map(|v| *v as f32).collect()
 }
