@@ -1,11 +1,10 @@
-//! What a user may rely on of a head in motion: only physics moves skin, lips stop each other, a
+//! What a user may rely on of a head in motion (contact apart): only physics moves skin, a
 //! rewind repeats itself, nothing flies apart, nothing is allocated per step.
 
 use std::sync::{Arc, OnceLock};
 
 use assert_no_alloc::{AllocDisabler, assert_no_alloc};
 use glam::Vec3;
-use mouthpiece_rig::lip_level::CREST;
 use mouthpiece_rig::{
     Articulation, Calibration, Control, Controls, Head, KeyFrame, Muscle, Simulation, Tongue,
     measure,
@@ -90,68 +89,6 @@ fn every_muscle_moves_the_skin_it_should() {
     );
     let purse = shift(Control::OrbicularisOrisSuperior);
     assert!(purse.x < -2.0, "the sphincter draws the corner in: {purse}");
-}
-
-#[test]
-fn lips_stop_each_other() {
-    let pressed = Articulation {
-        aperture_mm: -3.0,
-        jaw_rad: 0.025,
-        ..Articulation::REST
-    };
-    let controls = head().calibration.controls(&pressed);
-    let mut free = Simulation::new(Arc::clone(head()));
-    free.set_lip_contact(false);
-    let overlap = measure(head(), &settled(&mut free, &controls, 200)).aperture_mm;
-    assert!(
-        overlap < -1.5,
-        "without contact the lips pass each other: {overlap} mm"
-    );
-
-    let frame = settled(&mut Simulation::new(Arc::clone(head())), &controls, 200);
-    let mut drawn = frame.skin.clone();
-    head().skin_limit().unwrap().apply(&frame.skin, &mut drawn);
-    let columns = head().lips.upper.iter().zip(&head().lips.lower);
-    let count = head().lips.upper.len();
-    for (upper, lower) in columns.skip(1).take(count - 2) {
-        let at = |v: u32| drawn[v as usize];
-        for &v in &lower[CREST..] {
-            for w in upper[CREST..].windows(2) {
-                let (p, q, r) = (at(v), at(w[0]), at(w[1]));
-                let share = (p.z - q.z) / (r.z - q.z);
-                if (0.0..=1.0).contains(&share) {
-                    let depth = p.y - (q.y + (r.y - q.y) * share);
-                    assert!(
-                        !(0.6..12.0).contains(&depth),
-                        "the lower lip is {depth} mm inside the upper"
-                    );
-                }
-            }
-        }
-    }
-    assert!(
-        measure(head(), &frame).aperture_mm < 0.05,
-        "pressed lips are closed"
-    );
-}
-
-#[test]
-fn lids_close_over_the_eyes() {
-    let mut controls = Controls::default();
-    controls[Control::LidL] = 1.0;
-    controls[Control::LidR] = 1.0;
-    let frame = settled(&mut Simulation::new(Arc::clone(head())), &controls, 150);
-    // A ray from the pupil forwards must meet skin.
-    for side in [1.0, -1.0] {
-        let pupil = head().eyes[usize::from(side < 0.0)].centre;
-        let covered = head().skin.mesh.triangles.iter().any(|t| {
-            let [a, b, c] = t.map(|i| frame.skin[i as usize]);
-            let inside = |p: Vec3, q: Vec3| (q - p).truncate().perp_dot((pupil - p).truncate());
-            let (u, v, w) = (inside(a, b), inside(b, c), inside(c, a));
-            a.z > pupil.z && ((u > 0.0 && v > 0.0 && w > 0.0) || (u < 0.0 && v < 0.0 && w < 0.0))
-        });
-        assert!(covered, "the pupil shows through the closed lid");
-    }
 }
 
 #[test]

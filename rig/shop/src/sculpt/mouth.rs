@@ -20,7 +20,7 @@ const SEEN: f32 = 0.84;
 /// The red is not divided finer than this, mm: towards the corner it becomes low.
 const LOW_MM: f32 = 0.9;
 /// The inner side: upwards and backwards from the contact line, mm.
-const INSIDE: [(f32, f32); LIP_LEVELS - INNER] = [(0.0, 2.2), (3.0, 3.7), (8.6, 4.2)];
+const INSIDE: [(f32, f32); LIP_LEVELS - INNER] = [(0.5, 2.2), (3.2, 3.7), (8.6, 4.2)];
 /// Rings on the skin round the border: how far along the way to the outermost, which is a superellipse in the chart.
 const RINGS: [f32; 7] = [0.08, 0.18, 0.30, 0.44, 0.60, 0.79, 1.0];
 const OUTERMOST: ChartPoint = vec2(43.0, -35.0);
