@@ -23,8 +23,12 @@ const SPANS_CLOSED: usize = 8;
 const ITERATIONS: usize = 4;
 /// How much a relaxed muscle counts at a node beside one that works fully (1 more).
 const IDLE: f32 = 0.12;
+/// The same of a muscle of the corner, which has to hold that one against the sphincter.
+const IDLE_CORNER: f32 = 0.2;
+/// The same of a muscle that ends in a lip rather than at its corner: it lies loose.
+const IDLE_LIP: f32 = 0.03;
 /// How much more a linear muscle counts that works fully than a sphincter that does: it is the stronger.
-const STRONGER: f32 = 2.2;
+const STRONGER: f32 = 4.0;
 /// What a linear muscle counts across its own direction, against along it: it draws, and does not steer.
 const ACROSS: f32 = 0.15;
 /// Stiffness of a spring along a relaxed sphincter, and what full work adds.
@@ -84,6 +88,7 @@ struct Tie {
     along: Along,
     /// Weight at the nodes by direction, and how firmly the fibre follows them.
     weight: Mat3,
+    idle: f32,
     hold: f32,
     /// Share of the way from its origin of each of its points.
     shares: Vec<f32>,
@@ -290,6 +295,11 @@ impl Joined {
                 fibre: f,
                 along,
                 weight: along_and_across(insertion - fibre.points[0]) * hold,
+                idle: if at_modiolus(fibre.muscle) {
+                    IDLE_CORNER
+                } else {
+                    IDLE_LIP
+                },
                 hold,
                 shares: (0..fibre.points.len())
                     .map(|i| length(&fibre.points[..=i]) / whole)
@@ -366,7 +376,7 @@ impl Joined {
             let end = starts[tie.fibre + 1] - 1;
             let own = points[end] - rest[end];
             for (node, share) in tie.along.ends() {
-                let weight = tie.weight * (share * (IDLE + STRONGER * works[tie.fibre]));
+                let weight = tie.weight * (share * (tie.idle + STRONGER * works[tie.fibre]));
                 self.weight[node] += weight;
                 self.pull[node] += weight * own;
             }

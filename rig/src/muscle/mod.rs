@@ -30,16 +30,19 @@ const fn shortening(muscle: Muscle) -> f32 {
         Muscle::Platysma => 0.2,
         // They end in the lip, which comes no farther than to the nose.
         Muscle::LevatorLabiiSuperioris | Muscle::LevatorLabiiSuperiorisAlaequeNasi => 0.22,
+        Muscle::ZygomaticusMajor => 0.33,
         // From bone to the corner of the mouth or beside it: longer than what it can be drawn by.
-        Muscle::ZygomaticusMajor
-        | Muscle::ZygomaticusMinor
-        | Muscle::LevatorAnguliOris
-        | Muscle::DepressorAnguliOris => 0.27,
+        Muscle::ZygomaticusMinor | Muscle::LevatorAnguliOris | Muscle::DepressorAnguliOris => 0.27,
         Muscle::DepressorLabiiInferioris => 0.3,
         _ => LINEAR_SHORTENING,
     }
 }
 
+/// How much more the orbicularis oris presses the lips together than it narrows the mouth: the corners are
+/// held by the muscles that end there, the lips only by each other.
+const PRESS: f32 = 1.5;
+/// And how far it presses its fibres up or down at most, mm: the outer ones do not overtake the inner.
+const PRESS_MAX_MM: f32 = 6.0;
 /// The least slack that a fibre counts as having, mm: so that a straight one does not jump.
 const SLACK_MM: f32 = 0.5;
 /// A fibre nearer to the middle of the face than this belongs to both sides.
@@ -142,10 +145,14 @@ impl Fibre {
             } => {
                 let forward = self.protrudes(controls) * protrusion_mm;
                 let axis = carried(centre, share, mandible);
-                let scale = 1.0 - shrinking * contraction;
+                let lips = self.rounds_lips();
                 for q in out {
-                    let across = (*q - axis) * vec3(1.0, 1.0, 0.0);
-                    *q += across * (scale - 1.0) + vec3(0.0, 0.0, forward);
+                    let mut shift = (axis - *q) * (shrinking * contraction);
+                    if lips {
+                        let over = (shift.y * PRESS / PRESS_MAX_MM).powi(2);
+                        shift.y *= PRESS / (1.0 + over * over).sqrt().sqrt();
+                    }
+                    *q += vec3(shift.x, shift.y, forward);
                 }
             }
         }
@@ -155,6 +162,13 @@ impl Fibre {
     pub(crate) fn works(&self, measure: &Measure, controls: &Controls) -> f32 {
         let protrudes = self.protrudes(controls).abs();
         self.told(measure, controls).abs().max(protrudes)
+    }
+
+    const fn rounds_lips(&self) -> bool {
+        matches!(
+            self.muscle,
+            Muscle::OrbicularisOrisSuperior | Muscle::OrbicularisOrisInferior
+        )
     }
 
     /// Whether the mandible takes any of it along.

@@ -47,7 +47,6 @@ pub(super) fn attachments(head: &Head, numbering: &Numbering) -> Vec<Attachment>
         lid[margin.vertex as usize] = margin.hold;
     }
     let lid = numbering.of(&lid);
-    let wet = numbering.of(&head.skin.wet);
     let (count, fibres) = (numbering.movable, head.fibres.len());
     let mut places = vec![(0_u32, 0.0_f32); count * fibres];
     let mut hold = vec![0.0_f32; count * fibres];
@@ -59,7 +58,7 @@ pub(super) fn attachments(head: &Head, numbering: &Numbering) -> Vec<Attachment>
         }
     }
     let spread_mm: Vec<f32> = (0..count)
-        .map(|i| (spread(reference[i]) + 3.0 * wet[i]) * (1.0 - lid[i]).max(0.0))
+        .map(|i| spread(reference[i]) * (1.0 - lid[i]).max(0.0))
         .collect();
     let hold = spread_out(hold, fibres, numbering, &rest, &spread_mm);
     let mut all = Vec::new();
