@@ -51,10 +51,10 @@ const EFFORT: [f32; SOLVED.len()] = [0.5, 0.5, 1.6, 1.0, 1.6, 0.3, 0.3];
 const ALIKE: f32 = 1.2;
 /// Which of the solved are those halves.
 const PAIRS: [(usize, usize); 2] = [(0, 1), (5, 6)];
-/// Steps towards a posture, what holds the first of them back, and the least that does.
-const IMPROVEMENTS: usize = 40;
-const HOLD: f32 = 8.0;
-const HOLD_MIN: f32 = 1.0;
+/// Steps towards a posture, and what holds them back: always, and per square of what is missed, weighted.
+const IMPROVEMENTS: usize = 60;
+const HOLD: f32 = 4.0;
+const HOLD_PER_MISSED: f32 = 0.6;
 
 /// A calibration that cannot be read.
 #[derive(Debug, thiserror::Error)]
@@ -135,17 +135,9 @@ impl Calibration {
         if articulation.lip_teeth_mm.is_none() {
             weights[3] = 0.0;
         }
-        // Levenberg and Marquardt's way: held back the more the less a step helps, so that a target out of reach
-        // ends at the nearest posture instead of to and fro, and one a little beside it a little beside that.
-        let (mut hold, mut cost) = (HOLD, self.cost(&x, &wanted, &weights));
+        // Always as many steps, each a smooth function of the last: so is the whole.
         for _ in 0..IMPROVEMENTS {
-            let there = self.improved(&x, &wanted, &weights, hold);
-            let better = self.cost(&there, &wanted, &weights);
-            if better < cost {
-                (x, cost, hold) = (there, better, (hold * 0.5).max(HOLD_MIN));
-            } else {
-                hold *= 4.0;
-            }
+            x = self.improved(&x, &wanted, &weights);
         }
         let mut controls = controls_of(&x);
         controls[Control::Jaw] = articulation.jaw_rad;
@@ -187,33 +179,21 @@ impl Calibration {
         })
     }
 
-    /// What is made as small as can be: squares of what is missed, of muscle, of differences between the lips.
-    fn cost(
-        &self,
-        x: &[f32; VARIABLES],
-        wanted: &[f32; MEASURES],
-        weights: &[f32; MEASURES],
-    ) -> f32 {
-        let now = self.value(x);
-        let missed: f32 = (0..MEASURES)
-            .map(|m| (weights[m] * (wanted[m] - now[m])).powi(2))
-            .sum();
-        let effort: f32 = x.iter().zip(EFFORT).map(|(x, e)| e * x * x).sum();
-        let unlike: f32 = PAIRS.iter().map(|&(a, b)| (x[a] - x[b]).powi(2)).sum();
-        missed + effort + ALIKE * unlike
-    }
-
-    /// A Gauss-Newton step on the solved controls; `hold` keeps it short.
+    /// A Gauss-Newton step on the solved controls, held back the more the farther the mouth still is from where it
+    /// is wanted (Levenberg and Marquardt's way): at a target out of reach it would swing to and fro.
     fn improved(
         &self,
         x: &[f32; VARIABLES],
         wanted: &[f32; MEASURES],
         weights: &[f32; MEASURES],
-        hold: f32,
     ) -> [f32; VARIABLES] {
         const N: usize = SOLVED.len();
         const STEP: f32 = 1e-3;
         let now = self.value(x);
+        let missed: f32 = (0..MEASURES)
+            .map(|m| (weights[m] * (wanted[m] - now[m])).powi(2))
+            .sum();
+        let hold = HOLD + HOLD_PER_MISSED * missed;
         // Normal equations of the linearised problem: gram * d = slope.
         let (mut gram, mut slope) = ([[0.0_f32; N]; N], [0.0_f32; N]);
         let slopes: [[f32; MEASURES]; N] = std::array::from_fn(|i| {
