@@ -207,10 +207,6 @@ fn darken(head: &Head, frame: &KeyFrame, parts: &mut [Part]) {
         if !matches!(part.material, Material::Bone | Material::Muscle) {
             continue;
         }
-        part.mesh.occlusion = places
-            .iter()
-            .zip(normals)
-            .map(|(p, n)| rays.light(*p, *n))
-            .collect();
+        rays.light_all(places, normals, &mut part.mesh.occlusion);
     }
 }

@@ -11,6 +11,7 @@
 //! | `labels` | label files of every sad kind, and the round trip |
 //! | `sound` | sound files of every kind |
 //! | `usage` | exit statuses, help, what doctor and bench print |
+//! | `show` | what lies under the skin, drawn |
 //! | `still` | pictures against golden ones |
 //! | `readme` | that the README's commands and conversation work as printed |
 //! | `house` | the style of the source, and licences |
@@ -34,5 +35,6 @@ mod mouth;
 mod outline;
 mod readme;
 mod sound;
+mod show;
 mod still;
 mod usage;

@@ -1,5 +1,8 @@
 //! Rays against triangles: what stands over a place, and how much of the light from around reaches it.
 
+use std::num::NonZero;
+use std::sync::Mutex;
+
 use glam::{Vec3, Vec3A};
 use obvhs::BvhBuildParams;
 use obvhs::bvh2::Bvh2;
@@ -11,6 +14,8 @@ use obvhs::triangle::Triangle;
 const DIRECTIONS: usize = 48;
 /// What is farther than this darkens nothing, mm: the depth of an orbit.
 const REACH_MM: f32 = 28.0;
+/// Places that a thread takes at a time.
+const BAND: usize = 256;
 /// Rays start so far off their surface, mm.
 const OFF_MM: f32 = 0.35;
 
@@ -18,6 +23,12 @@ const OFF_MM: f32 = 0.35;
 pub(crate) struct Rays {
     triangles: Vec<Triangle>,
     bvh: Bvh2,
+}
+
+impl std::fmt::Debug for Rays {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        write!(f, "Rays against {} triangles", self.triangles.len())
+    }
 }
 
 impl Rays {
@@ -46,6 +57,33 @@ impl Rays {
             self.triangles[self.bvh.primitive_indices[id] as usize].intersect(ray)
         });
         hit.t.min(far)
+    }
+
+    /// [`Self::light`] of many places, on as many threads as there are processors.
+    pub(crate) fn light_all(&self, places: &[Vec3], normals: &[Vec3], out: &mut [f32]) {
+        let inputs = places.chunks(BAND).zip(normals.chunks(BAND));
+        let bands = Mutex::new(out.chunks_mut(BAND).zip(inputs));
+        let work = || {
+            loop {
+                let next = bands.lock().ok().and_then(|mut bands| bands.next());
+                let Some((out, (places, normals))) = next else {
+                    return;
+                };
+                for (light, (p, n)) in out.iter_mut().zip(places.iter().zip(normals)) {
+                    *light = self.light(*p, *n);
+                }
+            }
+        };
+        let processors = std::thread::available_parallelism().map_or(1, NonZero::get);
+        std::thread::scope(|scope| {
+            for _ in 1..processors {
+                // Where no thread is to be had the work is done here.
+                let _ = std::thread::Builder::new()
+                    .name("light folds".into())
+                    .spawn_scoped(scope, work);
+            }
+            work();
+        });
     }
 
     /// Share of the light from around that reaches a place of a surface with that unit normal; what

@@ -7,8 +7,12 @@
 //! one whose fibres keep their length bulges by as far as they have come out. Widths, thicknesses and
 //! lengths of tendon are in `shape`. Skin does not feel these surfaces: it hangs on the fibres.
 
+mod curve;
+mod seat;
 mod shape;
 mod sheet;
+
+use std::sync::Arc;
 
 use glam::Vec3;
 
@@ -30,6 +34,8 @@ pub struct Belly {
 #[derive(Clone, Debug)]
 pub struct MuscleSurfaces {
     sheets: Vec<Sheet>,
+    /// What muscles do not sink into as they move.
+    skull: Arc<Rays>,
     point_count: usize,
 }
 
@@ -37,10 +43,11 @@ impl MuscleSurfaces {
     /// Measures the muscles of `head` at rest.
     #[must_use]
     pub fn new(head: &Head) -> Self {
-        let bones = ["skull", "mandible"]
-            .into_iter()
-            .filter_map(|name| head.part(name));
-        let bones = Rays::new(bones.map(|b| (&b.mesh.positions[..], &b.mesh.triangles[..])));
+        let rays = |names: &[&str]| {
+            let bones = names.iter().filter_map(|name| head.part(name));
+            Rays::new(bones.map(|b| (&b.mesh.positions[..], &b.mesh.triangles[..])))
+        };
+        let bones = rays(&["skull", "mandible"]);
         let rest: Vec<Vec3> = head
             .fibres
             .iter()
@@ -79,6 +86,7 @@ impl MuscleSurfaces {
         }
         Self {
             sheets,
+            skull: Arc::new(rays(&["skull"])),
             point_count: rest.len(),
         }
     }
@@ -90,7 +98,8 @@ impl MuscleSurfaces {
         if points.len() != self.point_count {
             return Vec::new();
         }
-        self.sheets.iter().map(|s| s.shaped(points)).collect()
+        let shaped = self.sheets.iter().map(|s| s.shaped(points, &self.skull));
+        shaped.collect()
     }
 }
 

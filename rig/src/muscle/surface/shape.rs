@@ -88,7 +88,7 @@ pub(super) const fn of(muscle: Muscle) -> Shape {
             ..from_bone([10.0, 9.0, 5.0], [1.8, 3.4, 2.6], 0.12)
         },
         DepressorAnguliOris => Shape {
-            sink: [-0.6, -1.4, -0.6],
+            sink: [-2.2, -2.6, -0.8],
             round: 2.0,
             ..from_bone([9.0, 5.4, 2.8], [1.2, 3.2, 2.2], 0.06)
         },
@@ -108,19 +108,19 @@ pub(super) const fn of(muscle: Muscle) -> Shape {
         },
         CorrugatorSupercilii => Shape {
             seat: [1.0, 0.4, 0.0],
-            sink: [0.0, 1.0, 1.2],
-            ..from_bone([2.6, 3.6, 3.2], [2.0, 3.6, 0.8], 0.08)
+            sink: [0.0, 1.2, 1.9],
+            ..from_bone([2.6, 3.6, 3.0], [2.0, 3.4, 0.6], 0.08)
         },
         Procerus => Shape {
             seat: [1.0, 0.5, 0.2],
-            sink: [0.0, 0.0, 1.3],
+            sink: [0.0, 0.0, 1.9],
             // Its lowest fibres lie on cartilage, which the skull lacks.
             beyond: [-5.0, 0.0],
-            ..from_bone([2.0, 3.0, 4.0], [1.0, 2.4, 0.6], 0.20)
+            ..from_bone([2.0, 3.0, 3.8], [1.0, 2.4, 0.4], 0.20)
         },
         DepressorSupercilii => Shape {
-            sink: [0.0, 0.4, 1.5],
-            ..from_bone([1.8, 2.4, 2.8], [1.4, 2.0, 0.6], 0.10)
+            sink: [0.0, 0.5, 1.9],
+            ..from_bone([1.8, 2.4, 2.6], [1.4, 2.0, 0.4], 0.10)
         },
         OrbicularisOculiOrbital => Shape {
             beside: [2.6, 3.6, 2.6],
@@ -144,7 +144,7 @@ pub(super) const fn of(muscle: Muscle) -> Shape {
         DepressorSeptiNasi => from_bone([1.6, 2.2, 1.8], [1.4, 2.2, 1.4], 0.0),
         Platysma => Shape {
             beside: [9.0, 8.0, 4.5],
-            thick: [1.0, 1.7, 0.8],
+            thick: [1.0, 1.7, 0.5],
             tendon: [0.06, 0.0],
             sink: [0.0, 0.5, 1.6],
             ..PLAIN

@@ -8,7 +8,8 @@ use std::ops::Range;
 
 use glam::{Vec2, Vec3, vec2};
 
-use super::shape::{self, HIDDEN_MM, Shape, along};
+use super::curve::{curve, longer, on_line};
+use super::shape::{self, Shape, along};
 use super::{Belly, enclosed_volume};
 use crate::anatomy::Rays;
 use crate::mesh::normals;
@@ -21,15 +22,8 @@ const RINGS_CLOSED: usize = 72;
 /// Places across a sheet: this many, and more per fibre beyond the first.
 const ACROSS: usize = 11;
 const ACROSS_PER_FIBRE: usize = 6;
-/// Pieces of a fibre's segment before its length is measured.
-const PIECES: usize = 10;
 /// Ends of a control polygon nearer than this are one, mm.
 const JOINED_MM: f32 = 0.5;
-/// Bone is looked for from this far over the sheet to that far under it, mm.
-const OVER_MM: f32 = 6.0;
-const UNDER_MM: f32 = 15.0;
-/// Rounds of smoothing how a sheet lies on bone.
-const SMOOTHING: usize = 12;
 /// How much thicker or thinner than at rest a muscle may be drawn, and a sphincter: fibres that close on
 /// a point would make a ball.
 const SWELLING: Range<f32> = 0.4..3.0;
@@ -43,17 +37,17 @@ const ROUNDED: f32 = 0.7;
 #[derive(Clone, Debug)]
 pub(super) struct Sheet {
     muscle: Muscle,
-    shape: Shape,
+    pub(super) shape: Shape,
     contraction: Contraction,
     /// Each fibre's control points among all.
     fibres: Vec<Range<usize>>,
     closed: bool,
-    rings: usize,
-    across: usize,
+    pub(super) rings: usize,
+    pub(super) across: usize,
     /// 1 or -1: which side of the grid is out.
     out: f32,
     /// How far each place of the grid stands off its curve so that bone does not cover it, mm.
-    lift: Vec<f32>,
+    pub(super) lift: Vec<f32>,
     /// At rest: volume, mm3, and how far each ring is out of the line between the ends, mm.
     volume: f32,
     bow: Vec<f32>,
@@ -62,12 +56,12 @@ pub(super) struct Sheet {
 }
 
 /// The sheet's middle in one pose.
-struct Middle {
+pub(super) struct Middle {
     /// Ring by ring.
-    places: Vec<Vec3>,
-    normals: Vec<Vec3>,
+    pub(super) places: Vec<Vec3>,
+    pub(super) normals: Vec<Vec3>,
     /// Place across, -1 to 1.
-    across: Vec<f32>,
+    pub(super) across: Vec<f32>,
     /// Half the width of each ring, mm.
     half: Vec<f32>,
 }
@@ -116,7 +110,7 @@ impl Sheet {
         sheet.lift = sheet.lifts(&middle, bones);
         sheet.uvs = sheet.uvs(&middle, number);
         sheet.triangles = sheet.joined();
-        let places = sheet.solid(rest, 1.0);
+        let places = sheet.solid(rest, 1.0, &sheet.lift);
         sheet.volume = enclosed_volume(&places, &sheet.triangles);
         if sheet.volume < 0.0 {
             sheet.volume = -sheet.volume;
@@ -128,14 +122,15 @@ impl Sheet {
     }
 
     /// The surface for displaced control points, as thick as keeps its volume.
-    pub(super) fn shaped(&self, points: &[Vec3]) -> Belly {
+    pub(super) fn shaped(&self, points: &[Vec3], skull: &Rays) -> Belly {
+        let lift = self.lifts_now(points, skull);
         let range = match self.contraction {
             Contraction::Linear => SWELLING,
             Contraction::Sphincter { .. } => SWELLING_ROUND,
             Contraction::Belly { .. } => 1.0..1.0,
         };
         let mut swelling = 1.0_f32;
-        let mut positions = self.solid(points, swelling);
+        let mut positions = self.solid(points, swelling, &lift);
         for _ in 0..ROUNDS {
             let volume = enclosed_volume(&positions, &self.triangles);
             let wanted = swelling * (self.volume / volume.max(1e-3));
@@ -144,7 +139,7 @@ impl Sheet {
                 break;
             }
             swelling = next;
-            positions = self.solid(points, swelling);
+            positions = self.solid(points, swelling, &lift);
         }
         Belly {
             muscle: self.muscle,
@@ -169,7 +164,7 @@ impl Sheet {
     }
 
     /// The same as widths and tendons go: a round muscle begins and ends at its ligament.
-    fn from_end(&self, ring: usize) -> f32 {
+    pub(super) fn from_end(&self, ring: usize) -> f32 {
         let u = self.along(ring);
         if self.closed { u.min(1.0 - u) } else { u }
     }
@@ -188,7 +183,7 @@ impl Sheet {
     }
 
     /// The grid of places between outer and inner side.
-    fn middle(&self, points: &[Vec3], swelling: f32) -> Middle {
+    pub(super) fn middle(&self, points: &[Vec3], swelling: f32) -> Middle {
         let curves: Vec<Vec<Vec3>> = self
             .fibres
             .iter()
@@ -270,7 +265,7 @@ impl Sheet {
         }
     }
 
-    fn neighbours(&self, ring: usize) -> (usize, usize) {
+    pub(super) fn neighbours(&self, ring: usize) -> (usize, usize) {
         if self.closed {
             (
                 (ring + self.rings - 1) % self.rings,
@@ -282,7 +277,7 @@ impl Sheet {
     }
 
     /// Half the thickness at a place of the grid at rest.
-    fn half_thickness(&self, ring: usize, across: f32) -> f32 {
+    pub(super) fn half_thickness(&self, ring: usize, across: f32) -> f32 {
         let edge = 2.0 * self.fibres.len() as f32;
         let round = (1.0 - across.abs().powf(edge)).max(0.0).sqrt();
         0.5 * along(self.shape.thick, self.from_end(ring)) * round
@@ -303,82 +298,8 @@ impl Sheet {
             .collect()
     }
 
-    /// How far the grid comes out at rest: so far that its outer half is clear of bone, or, below 0, so deep
-    /// as it is seated on bone or lies under its neighbours.
-    fn lifts(&self, middle: &Middle, bones: &Rays) -> Vec<f32> {
-        let clear = self.over_bone(middle, bones);
-        let raw: Vec<f32> = (0..clear.len())
-            .map(|k| {
-                let u = self.from_end(k / self.across);
-                let sink = along(self.shape.sink, u);
-                match clear[k] {
-                    Some(clear) if clear > -sink && sink < HIDDEN_MM => clear,
-                    Some(clear) if clear < -sink => {
-                        -sink + (clear + sink) * along(self.shape.seat, u)
-                    }
-                    _ => -sink,
-                }
-            })
-            .collect();
-        // Over the whole sheet smooth: bone has edges, muscle bridges them.
-        let mut lift = raw.clone();
-        for _ in 0..SMOOTHING {
-            lift = (0..lift.len())
-                .map(|k| {
-                    let (ring, j) = (k / self.across, k % self.across);
-                    let (before, after) = self.neighbours(ring);
-                    let at = |ring: usize, j: usize| lift[ring * self.across + j];
-                    let sum = at(before, j)
-                        + at(after, j)
-                        + at(ring, j.saturating_sub(1))
-                        + at(ring, (j + 1).min(self.across - 1));
-                    let floor = if raw[k] > 0.0 { 0.8 * raw[k] } else { f32::MIN };
-                    (0.5 * at(ring, j) + 0.125 * sum).max(floor)
-                })
-                .collect();
-        }
-        lift
-    }
-
-    /// How far each place of the grid would have to move out to lie on the bone, less below it than half of
-    /// the flesh; where there is no bone under it, as its neighbours do.
-    fn over_bone(&self, middle: &Middle, bones: &Rays) -> Vec<Option<f32>> {
-        let mut clear: Vec<Option<f32>> = (0..middle.places.len())
-            .map(|k| {
-                let (p, n) = (middle.places[k], middle.normals[k]);
-                let half = self.half_thickness(k / self.across, middle.across[k]);
-                let free = bones.free(p + n * OVER_MM, -n, OVER_MM + UNDER_MM);
-                (free < OVER_MM + UNDER_MM).then_some(OVER_MM - free + 0.4 * half)
-            })
-            .collect();
-        for _ in 0..self.rings {
-            if clear.iter().all(Option::is_some) {
-                break;
-            }
-            clear = (0..clear.len())
-                .map(|k| {
-                    let (ring, j) = (k / self.across, k % self.across);
-                    let (before, after) = self.neighbours(ring);
-                    let beside = [
-                        (before, j),
-                        (after, j),
-                        (ring, j.saturating_sub(1)),
-                        (ring, (j + 1).min(self.across - 1)),
-                    ];
-                    let known = beside
-                        .iter()
-                        .filter_map(|(ring, j)| clear[ring * self.across + j]);
-                    let (sum, count) = known.fold((0.0, 0), |(s, n), v| (s + v, n + 1));
-                    // Bone that ends does not draw up what goes on beyond it.
-                    clear[k].or((count > 0).then(|| (sum / count as f32).min(0.0)))
-                })
-                .collect();
-        }
-        clear
-    }
-
     /// The closed surface's places: loop by loop, then the middles of the two ends.
-    fn solid(&self, points: &[Vec3], swelling: f32) -> Vec<Vec3> {
+    fn solid(&self, points: &[Vec3], swelling: f32, lift: &[f32]) -> Vec<Vec3> {
         let middle = self.middle(points, swelling);
         let bows = match self.contraction {
             Contraction::Belly { .. } => self.bows(&middle),
@@ -394,13 +315,12 @@ impl Sheet {
                 let (n, across) = (middle.normals[k], middle.across[k]);
                 let half = self.half_thickness(ring, across);
                 let inner = bulge * (1.0 - across.abs().powi(2));
-                let lift = self.lift.get(k).copied().unwrap_or(0.0);
                 let off = if side > 0.0 {
                     half * factor
                 } else {
                     -half * factor - inner
                 };
-                middle.places[k] + n * (lift + off)
+                middle.places[k] + n * (lift[k] + off)
             };
             for j in 0..self.across {
                 out.push(place(j, 1.0));
@@ -491,83 +411,3 @@ impl Sheet {
 
 /// How far from its end flesh without tendon is said to begin.
 const CLEAR: f32 = 0.25;
-
-/// A control polygon that goes on straight beyond its ends, mm.
-fn longer(polygon: &[Vec3], [before, after]: [f32; 2]) -> Vec<Vec3> {
-    let mut out = polygon.to_vec();
-    let last = out.len() - 1;
-    out[0] += (polygon[0] - polygon[1]).normalize_or_zero() * before;
-    out[last] += (polygon[last] - polygon[last - 1]).normalize_or_zero() * after;
-    out
-}
-
-/// A smooth curve through a control polygon, as places at equal distances along it.
-fn curve(polygon: &[Vec3], closed: bool, count: usize) -> Vec<Vec3> {
-    let n = if closed {
-        polygon.len() - 1
-    } else {
-        polygon.len()
-    };
-    let at = |i: isize| {
-        if closed {
-            polygon[i.rem_euclid(n as isize) as usize]
-        } else if i < 0 {
-            // Beyond an end the polygon goes on straight.
-            polygon[0] * 2.0 - polygon[1]
-        } else if i as usize >= n {
-            polygon[n - 1] * 2.0 - polygon[n - 2]
-        } else {
-            polygon[i as usize]
-        }
-    };
-    let segments = if closed { n } else { n - 1 };
-    let mut fine = Vec::with_capacity(segments * PIECES + 1);
-    for i in 0..segments as isize {
-        for k in 0..PIECES {
-            let t = k as f32 / PIECES as f32;
-            fine.push(catmull_rom([at(i - 1), at(i), at(i + 1), at(i + 2)], t));
-        }
-    }
-    fine.push(at(segments as isize));
-    let length: f32 = fine.windows(2).map(|w| w[0].distance(w[1])).sum();
-    let last = if closed { count } else { count - 1 };
-    (0..count)
-        .map(|i| walk(&fine, length * i as f32 / last as f32))
-        .collect()
-}
-
-/// The place so far along a polygon.
-fn walk(polygon: &[Vec3], mut way: f32) -> Vec3 {
-    for w in polygon.windows(2) {
-        let length = w[0].distance(w[1]);
-        if way <= length {
-            return w[0].lerp(w[1], way / length.max(1e-9));
-        }
-        way -= length;
-    }
-    polygon[polygon.len() - 1]
-}
-
-/// The place so far along a smooth line through knots.
-fn on_line(knots: &[Vec3], mut way: f32) -> Vec3 {
-    for (i, w) in knots.windows(2).enumerate() {
-        let length = w[0].distance(w[1]);
-        if way <= length || i + 2 == knots.len() {
-            let before = i.checked_sub(1).map_or(w[0] * 2.0 - w[1], |k| knots[k]);
-            let after = knots.get(i + 2).copied().unwrap_or(w[1] * 2.0 - w[0]);
-            let t = (way / length.max(1e-9)).clamp(0.0, 1.0);
-            return catmull_rom([before, w[0], w[1], after], t);
-        }
-        way -= length;
-    }
-    knots[0]
-}
-
-/// Between the second and third of four places, passing through both.
-fn catmull_rom([a, b, c, d]: [Vec3; 4], t: f32) -> Vec3 {
-    let (t2, t3) = (t * t, t * t * t);
-    0.5 * (b * 2.0
-        + (c - a) * t
-        + (a * 2.0 - b * 5.0 + c * 4.0 - d) * t2
-        + (b * 3.0 - a - c * 3.0 + d) * t3)
-}
