@@ -82,8 +82,8 @@ mod tests {
             assert!(way[met..].iter().all(|x| *x <= 1e-3), "{from}");
         }
         // Flung shut: what arrives with 5 rad/s stands still on the tooth.
-        assert_eq!(step(0.005, -5.0, 0.1), (0.0, 0.0));
-        assert_eq!(step(0.449, 5.0, 0.3), (0.45, 0.0));
+        assert_eq!(step(0.005, -5.0, 0.1, STEP_S), (0.0, 0.0));
+        assert_eq!(step(0.449, 5.0, 0.3, STEP_S), (0.45, 0.0));
     }
 
     #[test]
