@@ -9,7 +9,7 @@ use std::time::Instant as Wall;
 
 use indicatif::ProgressBar;
 use mouthpiece_render::{FRAMES_IN_FLIGHT, Gpu, Offscreen};
-use mouthpiece_rig::{KeyFrame, STEP_TICKS, Simulation, TICK_RATE};
+use mouthpiece_rig::{Head, KeyFrame, STEP_TICKS, Simulation, TICK_RATE, TissueModel};
 use serde_json::{Map, Value, json};
 
 use crate::cli::{BenchArgs, Fps, LookArgs, Size, TierArg, ViewArg};
@@ -38,7 +38,7 @@ const PICTURES: u32 = 8;
 pub fn run(args: &BenchArgs) -> anyhow::Result<()> {
     let started = Wall::now();
     let utterance = Utterance::demo()?;
-    let cast = Cast::load(args.cast.head.as_deref())?;
+    let cast = Cast::load(&args.cast)?;
     let part = Part::new(&cast, &utterance.segments, Some(1));
     let mut performance = Performance::new(Arc::clone(&cast.head), part.clone());
     let mut instant = Instant::default();
@@ -58,7 +58,8 @@ pub fn run(args: &BenchArgs) -> anyhow::Result<()> {
     let report = json!({
         "first_picture_ms": rounded(first_picture_ms),
         "speech": speech(&part, ticks),
-        "simulation": simulation(&cast, &part, ticks),
+        "simulation": simulation(&cast.head, &part, ticks),
+        "simulation_layered": simulation(&layered(&cast.head), &part, ticks),
         "render": render(&cast, &gpu, &mut performance)?,
         "export": export(&cast, utterance)?,
         "rss_mb": peak_mb(),
@@ -90,12 +91,19 @@ fn speech(part: &Part, ticks: i64) -> Value {
     json!({ "realtime_factor": rounded(seconds(ticks) / started.elapsed().as_secs_f64()) })
 }
 
-fn simulation(cast: &Cast, part: &Part, ticks: i64) -> Value {
+/// The same head with the other tissue.
+fn layered(head: &Head) -> Arc<Head> {
+    let mut head = head.clone();
+    head.tissue.model = TissueModel::Layered;
+    Arc::new(head)
+}
+
+fn simulation(head: &Arc<Head>, part: &Part, ticks: i64) -> Value {
     let controls: Vec<_> = (0..ticks)
         .step_by(STEP_TICKS as usize)
         .map(|time| part.controls_at(time))
         .collect();
-    let mut simulation = Simulation::new(Arc::clone(&cast.head));
+    let mut simulation = Simulation::new(Arc::clone(head));
     let started = Wall::now();
     for controls in &controls {
         simulation.step(controls);

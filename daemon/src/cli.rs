@@ -10,7 +10,7 @@ use std::path::PathBuf;
 
 use clap::{ArgAction, Args, Parser, Subcommand, ValueEnum};
 use mouthpiece_render::{Background, Camera, Tier, View};
-use mouthpiece_rig::Anatomy;
+use mouthpiece_rig::{Anatomy, TissueModel};
 
 pub use head::{CalibrateArgs, FitArgs, HeadCommand, InfoArgs, LandmarksArgs};
 pub use values::{Fps, Rgb, Size};
@@ -109,6 +109,27 @@ pub struct CastArgs {
     /// A head file (.glb) [default: the built-in head]
     #[arg(long, value_name = "F")]
     pub head: Option<PathBuf>,
+    /// What moves the skin: springs in one layer, or layered tissue [default: what the head says]
+    #[arg(long, value_enum, value_name = "MODEL")]
+    pub tissue: Option<TissueArg>,
+}
+
+/// A model of the skin's tissue.
+#[derive(Clone, Copy, Debug, ValueEnum)]
+pub enum TissueArg {
+    /// The skin's edges and springs to muscle and bone: the default
+    Springs,
+    /// Skin, fascia and skull in prisms: slower, for comparison
+    Layered,
+}
+
+impl From<TissueArg> for TissueModel {
+    fn from(arg: TissueArg) -> Self {
+        match arg {
+            TissueArg::Springs => Self::Springs,
+            TissueArg::Layered => Self::Layered,
+        }
+    }
 }
 
 /// What is to be said.

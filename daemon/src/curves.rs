@@ -26,7 +26,7 @@ const MEASURED: [&str; 5] = [
 /// Runs the command.
 pub fn run(args: &CurvesArgs) -> anyhow::Result<()> {
     let utterance = Utterance::load(&args.input)?;
-    let cast = Cast::load(args.cast.head.as_deref())?;
+    let cast = Cast::load(&args.cast)?;
     let part = Part::new(&cast, &utterance.segments, args.seed).with_mood(Mood::load(&args.mood)?);
     let rate = args.rate;
     // Both ends count: a second at 100 Hz is 101 rows.

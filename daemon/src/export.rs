@@ -41,7 +41,7 @@ pub struct Job {
 pub fn run(args: &ExportArgs) -> anyhow::Result<()> {
     let job = Job {
         utterance: Utterance::load(&args.input)?,
-        cast: Cast::load(args.cast.head.as_deref())?,
+        cast: Cast::load(&args.cast)?,
         size: args.size,
         fps: args.fps,
         look: args.look.clone(),

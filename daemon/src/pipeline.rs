@@ -5,7 +5,6 @@
 //! and encoding. The counter of instants is the only clock: the same utterance,
 //! instants and seed give the same key frames, whatever the machine is doing meanwhile.
 
-use std::path::Path;
 use std::sync::Arc;
 use std::thread::JoinHandle;
 
@@ -17,7 +16,7 @@ use mouthpiece_rig::{
 };
 use mouthpiece_speech::{Idle, Speech, Track};
 
-use crate::cli::{MoodArgs, Usage};
+use crate::cli::{CastArgs, MoodArgs, Usage};
 
 /// The head runs this long before the first instant, so that it is settled by then.
 const PRE_ROLL_TICKS: i64 = TICK_RATE;
@@ -35,12 +34,15 @@ pub struct Cast {
 }
 
 impl Cast {
-    /// The head in a file, or the built-in one.
-    pub fn load(file: Option<&Path>) -> anyhow::Result<Self> {
-        let head = match file {
+    /// The head in a file, or the built-in one, with its own tissue or another.
+    pub fn load(args: &CastArgs) -> anyhow::Result<Self> {
+        let mut head = match &args.head {
             Some(file) => Head::load(file)?,
             None => Head::reference()?,
         };
+        if let Some(tissue) = args.tissue {
+            head.tissue.model = tissue.into();
+        }
         let speech = Speech::new(&head.calibration)?;
         let head = Arc::new(head);
         Ok(Self { head, speech })
@@ -270,7 +272,7 @@ mod tests {
     /// Frames at any rate are samples of one motion: asking more often changes nothing.
     #[test]
     fn an_instant_does_not_depend_on_those_asked_for_before_it() {
-        let cast = Cast::load(None).unwrap();
+        let cast = Cast::load(&CastArgs::default()).unwrap();
         let mut often = Performance::new(Arc::clone(&cast.head), part(&cast));
         let mut once = Performance::new(Arc::clone(&cast.head), part(&cast));
         let (mut a, mut b) = (Instant::default(), Instant::default());
@@ -284,7 +286,7 @@ mod tests {
 
     #[test]
     fn the_thread_gives_what_the_performance_gives_and_the_head_is_settled_at_first() {
-        let cast = Cast::load(None).unwrap();
+        let cast = Cast::load(&CastArgs::default()).unwrap();
         let times = || (0..20).map(|k| k * 1601);
         let mut performance = Performance::new(Arc::clone(&cast.head), part(&cast));
         let instants = Instants::start(Arc::clone(&cast.head), part(&cast), times()).unwrap();

@@ -21,7 +21,7 @@ const SETTLE_TICKS: i64 = TICK_RATE;
 
 /// Runs the command.
 pub fn run(args: &StillArgs) -> anyhow::Result<()> {
-    let cast = Cast::load(args.cast.head.as_deref())?;
+    let cast = Cast::load(&args.cast)?;
     let frame = match (&args.phone, &args.controls) {
         (Some(code), _) => phone(&cast, code)?,
         (None, Some(text)) => settled(&cast, &controls(text)?),

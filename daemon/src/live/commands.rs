@@ -34,7 +34,7 @@ pub fn run(args: &RunArgs) -> Result<()> {
     };
     // First, so that a second daemon ends before it has cost anything.
     let server = net.block_on(Server::bind(&address))?;
-    let cast = Cast::load(args.stage.cast.head.as_deref())?;
+    let cast = Cast::load(&args.stage.cast)?;
     let (player, sight) = Player::start(&cast, choice(&args.stage), args.stage.seed)?;
     let serving = net.spawn(server.serve(player.handle()));
     let seen = match Display::open() {
@@ -93,7 +93,7 @@ fn perform(
     net: &Runtime,
     stop: &Stop,
 ) -> Result<()> {
-    let cast = Cast::load(stage.cast.head.as_deref())?;
+    let cast = Cast::load(&stage.cast)?;
     let (player, sight) = Player::start(&cast, choice(stage), stage.seed)?;
     let display = match Display::open() {
         Ok(display) => Some(display),
