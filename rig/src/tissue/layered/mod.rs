@@ -33,6 +33,8 @@ mod layers;
 mod own;
 mod springs;
 mod strength;
+#[cfg(test)]
+mod tests;
 mod vectors;
 mod volume;
 
@@ -49,9 +51,9 @@ use crate::{Control, Head, Muscle};
 
 /// Force per mass and velocity, 1/s: about critical for a cheek on its restoring force.
 const DAMPING: f32 = 100.0;
-/// Restoring force of the fascia against the default model's springs to bone, and what it is at least, 1/s².
-const RESTORE: f32 = 0.5;
-const RESTORE_LEAST: f32 = 12_000.0;
+/// Restoring force of the fascia, 1/s²: everywhere, and its part of the default model's springs to bone.
+const RESTORE_SOFT: f32 = 9_500.0;
+const RESTORE_BONE: f32 = 0.6;
 /// A node counts as heavier by this share of its springs' stiffness times the step's square. With a quarter of
 /// twice the sum (Gershgorin's bound of what vibrates) the step would be just stable.
 const INERTIA: f32 = 0.35;
@@ -137,7 +139,7 @@ impl Layered {
             .map(|i| (rest[i][1] - skull[i]).dot(out[i]) * CLEARANCE)
             .collect();
         let restore = (0..movable)
-            .map(|i| (bone_stiffness(reference[i], side[i]) * RESTORE).max(RESTORE_LEAST) * scale)
+            .map(|i| (RESTORE_SOFT + RESTORE_BONE * bone_stiffness(reference[i], side[i])) * scale)
             .collect();
         let jawed = (0..movable)
             .map(|i| Jawed {

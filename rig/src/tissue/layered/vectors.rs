@@ -20,9 +20,9 @@ const KAPPA: f32 = 0.48;
 /// Of the width ratio.
 const WIDTH_EXPONENT: f32 = 1.8;
 /// One unit of the paper's widths, mm: its frontalis then covers a brow as far as anatomy's does.
-const WIDTH_MM: f32 = 22.0;
+const WIDTH_MM: f32 = 26.0;
 /// A muscle reaches so far to each side at least, mm: less would be single nodes.
-const WIDTH_LEAST_MM: f32 = 9.0;
+const WIDTH_LEAST_MM: f32 = 12.0;
 /// And so far out of the plane that its vector and its normal span, mm.
 const REACH_MM: f32 = 16.0;
 /// Behind its attached end the force fades over this share of its width (LEE ends it at once; on a fine

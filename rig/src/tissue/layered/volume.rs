@@ -12,8 +12,9 @@ use super::springs::Columns;
 
 /// Per mass and mm of thickness, 1/s²: thrice the spring between skin and fascia in the mean column.
 const K1: f32 = 40_000.0;
-/// Per mass and mm, 1/s²: a little, since it also holds against turning.
-const K2: f32 = 300.0;
+/// Per mass and mm, 1/s²: so much that skin pressed together, where springs are slack, keeps one shape; more would
+/// hold prisms against turning with the jaw.
+const K2: f32 = 2_000.0;
 
 /// No prism answers to more than this, mm: a torn one's volume grows as the cube of its size.
 const THICKER_MM: f32 = 1.5;
