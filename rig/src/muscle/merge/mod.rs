@@ -6,11 +6,13 @@
 //! sphincters, as long as these alone would be, even out the rest in a few iterations, and what came of it
 //! is handed back to the fibres. Nothing is remembered from step to step, nothing allocated.
 
+mod resolve;
+
 use std::ops::Range;
 
-use glam::{Affine3A, Mat3, Vec3};
+use glam::{Mat3, Vec3};
 
-use super::{Contraction, Fibre, carried, chord, length, straighten};
+use super::{Contraction, Fibre, chord, length};
 use crate::Muscle;
 
 /// A linear muscle merges into a sphincter within this distance of its insertion, mm.
@@ -19,25 +21,14 @@ const REACH_MM: f32 = 17.0;
 /// iterations reach from a corner of the mouth to the middle.
 const SPANS_OPEN: usize = 6;
 const SPANS_CLOSED: usize = 8;
-/// HABER: three or four are enough, and they depend on the longest way among the nodes (here 3 springs).
-const ITERATIONS: usize = 4;
 /// How much a relaxed muscle counts at a node beside one that works fully (1 more).
 const IDLE: f32 = 0.12;
 /// The same of a muscle of the corner, which has to hold that one against the sphincter.
 const IDLE_CORNER: f32 = 0.2;
 /// The same of a muscle that ends in a lip rather than at its corner: it lies loose.
 const IDLE_LIP: f32 = 0.03;
-/// How much more a linear muscle counts that works fully than a sphincter that does: it is the stronger.
-const STRONGER: f32 = 4.0;
 /// What a linear muscle counts across its own direction, against along it: it draws, and does not steer.
 const ACROSS: f32 = 0.15;
-/// Stiffness of a spring along a relaxed sphincter, and what full work adds.
-const SPRING: f32 = 0.35;
-const SPRING_WORK: f32 = 0.5;
-/// Share of a spring that resists turning; the rest resists only another length.
-const UNTURNED: f32 = 0.5;
-/// The muscles never draw a modiolus farther than this, mm (a full smile moves it by some 12).
-const MODIOLUS_MAX_MM: f32 = 13.0;
 
 /// A place on a fibre: between a control point, by its number among all, and the next.
 #[derive(Clone, Copy, Debug)]
@@ -329,126 +320,6 @@ impl Joined {
         let rings = self.rings.iter().flat_map(|r| r.fibres.clone());
         rings.chain(self.ties.iter().map(|t| t.fibre))
     }
-
-    /// Moves the points of joined fibres from where each would be alone to where they are together.
-    /// `works` says how hard each fibre works, 0 to 1.
-    pub(crate) fn resolve(
-        &mut self,
-        works: &[f32],
-        mandible: &Affine3A,
-        rest: &[Vec3],
-        starts: &[usize],
-        points: &mut [Vec3],
-    ) {
-        self.meet(works, rest, starts, points);
-        for _ in 0..ITERATIONS {
-            self.relax(works);
-        }
-        for (node, shift) in self
-            .nodes
-            .iter()
-            .zip(&mut self.now)
-            .filter(|(n, _)| n.bounded)
-        {
-            let jaw = carried(node.rest, node.mandible, mandible) - node.rest;
-            *shift = jaw + bound(*shift - jaw, MODIOLUS_MAX_MM);
-        }
-        self.hand_back(rest, starts, points);
-    }
-
-    /// Every node goes to the weighted mean of its muscles.
-    fn meet(&mut self, works: &[f32], rest: &[Vec3], starts: &[usize], points: &[Vec3]) {
-        self.weight.fill(Mat3::ZERO);
-        self.pull.fill(Vec3::ZERO);
-        let mut slot = 0;
-        for ring in &self.rings {
-            let weight = IDLE + works[ring.fibres.start];
-            for (node, places) in ring.nodes.iter().zip(&ring.places) {
-                let sum: Vec3 = places.iter().map(|p| p.on(points) - p.on(rest)).sum();
-                let own = sum / places.len().max(1) as f32;
-                self.own[slot] = own;
-                slot += 1;
-                self.weight[*node as usize] += Mat3::from_diagonal(Vec3::splat(weight));
-                self.pull[*node as usize] += own * weight;
-            }
-        }
-        for tie in &self.ties {
-            let end = starts[tie.fibre + 1] - 1;
-            let own = points[end] - rest[end];
-            for (node, share) in tie.along.ends() {
-                let weight = tie.weight * (share * (tie.idle + STRONGER * works[tie.fibre]));
-                self.weight[node] += weight;
-                self.pull[node] += weight * own;
-            }
-        }
-        for ((now, pull), weight) in self.now.iter_mut().zip(&self.pull).zip(&self.weight) {
-            *now = weight.inverse() * *pull;
-        }
-        // What the iterations divide by: the springs' stiffness resists in all directions.
-        self.stiffness.fill(0.0);
-        for ring in &self.rings {
-            let stiffness = SPRING + SPRING_WORK * works[ring.fibres.start];
-            for (i, j) in ring.spans() {
-                self.stiffness[ring.nodes[i] as usize] += stiffness;
-                self.stiffness[ring.nodes[j] as usize] += stiffness;
-            }
-        }
-        for ((solve, weight), s) in self.solve.iter_mut().zip(&self.weight).zip(&self.stiffness) {
-            *solve = (*weight + Mat3::from_diagonal(Vec3::splat(*s))).inverse();
-        }
-    }
-
-    /// One iteration: every node goes to the mean of where its muscles and its springs want it.
-    fn relax(&mut self, works: &[f32]) {
-        self.next.copy_from_slice(&self.pull);
-        let mut base = 0;
-        for ring in &self.rings {
-            let stiffness = SPRING + SPRING_WORK * works[ring.fibres.start];
-            for (i, j) in ring.spans() {
-                let (a, b) = (ring.nodes[i] as usize, ring.nodes[j] as usize);
-                let apart = self.nodes[b].rest - self.nodes[a].rest;
-                let alone = apart + self.own[base + j] - self.own[base + i];
-                let is = apart + self.now[b] - self.now[a];
-                let as_long = is * (alone.length() / is.length().max(1e-3));
-                let wanted = as_long.lerp(alone, UNTURNED) - apart;
-                self.next[a] += (self.now[b] - wanted) * stiffness;
-                self.next[b] += (self.now[a] + wanted) * stiffness;
-            }
-            base += ring.nodes.len();
-        }
-        for ((now, next), solve) in self.now.iter_mut().zip(&self.next).zip(&self.solve) {
-            *now = *solve * *next;
-        }
-    }
-
-    /// Fibres follow their nodes: sphincters between two of them, linear ones from their origin on, which
-    /// draws them straight.
-    fn hand_back(&self, rest: &[Vec3], starts: &[usize], points: &mut [Vec3]) {
-        let mut base = 0;
-        for ring in &self.rings {
-            let shift = |k: u32| {
-                let k = k as usize;
-                self.now[ring.nodes[k] as usize] - self.own[base + k]
-            };
-            for (point, along) in &ring.along {
-                points[*point as usize] += shift(along.a).lerp(shift(along.b), along.share);
-            }
-            base += ring.nodes.len();
-        }
-        for tie in &self.ties {
-            let range = starts[tie.fibre]..starts[tie.fibre + 1];
-            let end = range.end - 1;
-            let there = self.now[tie.along.a as usize]
-                .lerp(self.now[tie.along.b as usize], tie.along.share);
-            let drawn = (there - (points[end] - rest[end])) * tie.hold;
-            let fibre = &mut points[range];
-            let (chord, length) = (chord(fibre), length(fibre));
-            for (point, share) in fibre.iter_mut().zip(&tie.shares) {
-                *point += drawn * *share;
-            }
-            straighten(fibre, chord, length);
-        }
-    }
 }
 
 impl Along {
@@ -486,12 +357,6 @@ fn along_and_across(direction: Vec3) -> Mat3 {
     let d = direction.normalize_or(Vec3::X);
     Mat3::from_cols(d * d.x, d * d.y, d * d.z) * (1.0 - ACROSS)
         + Mat3::from_diagonal(Vec3::splat(ACROSS))
-}
-
-/// `v`, but never longer than `most`, which it approaches smoothly.
-fn bound(v: Vec3, most: f32) -> Vec3 {
-    let over = v.length_squared() / (most * most);
-    v / (1.0 + over * over).sqrt().sqrt()
 }
 
 /// Where on a fibre, whose points begin at `start`, a share of its length is.
