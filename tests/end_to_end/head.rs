@@ -36,6 +36,34 @@ fn info_counts_what_is_there() {
     assert!(built_in.expect_done().text().contains("teeth_upper"));
 }
 
+/// Guards `head calibrate`: it says how near postures come and which mouths cannot be made, and the head that it
+/// writes is one whose `head info` says the same of them.
+#[test]
+fn calibrate_says_what_the_head_cannot_do() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = written(folder.path());
+    let new = folder.path().join("new.glb");
+    let (from, to) = (path.to_string_lossy(), new.to_string_lossy());
+    let said = binary::run(&["head", "calibrate", &from, "-o", &to]);
+    let said = said.expect_done().text();
+    for word in [
+        "60 random postures",
+        "aperture",
+        "worst",
+        "mouths of speech",
+    ] {
+        assert!(said.contains(word), "{said}");
+    }
+    let info = binary::run(&["head", "info", &to, "--json"]);
+    let report: Value = serde_json::from_str(&info.expect_done().text()).unwrap();
+    let mouths = &report["mouths_of_speech"];
+    assert!(mouths["asked"].as_u64().unwrap() > 40);
+    for miss in mouths["missed"].as_array().unwrap() {
+        assert!(said.contains(miss["row"].as_str().unwrap()), "{said}");
+        assert!(miss["by_mm"].as_f64().unwrap().abs() > 0.5);
+    }
+}
+
 /// Guards that a head from a file speaks as the same head built in.
 #[test]
 fn a_head_file_is_spoken_with() {

@@ -67,7 +67,8 @@ pub struct FitArgs {
 /// Measure how a head's mouth answers to its muscles, so that speech shapes it rightly
 #[derive(Debug, Args)]
 #[command(
-    after_help = "`mouthpiece head fit` carries the reference head's over, scaled to the new mouth; measured, it is exact.\n\n\
+    after_help = "`mouthpiece head fit` carries the reference head's over, scaled to the new mouth; measured, it is exact.\n\
+                  Prints how near random postures came, lips in contact, and which mouths of speech this head cannot make.\n\n\
                   Example:\n  mouthpiece head calibrate anna.glb -o anna-calibrated.glb"
 )]
 pub struct CalibrateArgs {

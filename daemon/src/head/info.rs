@@ -6,6 +6,7 @@ use std::fmt::Write as _;
 use mouthpiece_rig::{Head, Layer, Mesh, Quality, edge_lengths, measurements};
 use serde_json::{Map, Value, json};
 
+use super::calibrate::Unreachable;
 use crate::cli::InfoArgs;
 use crate::media::output;
 
@@ -15,11 +16,13 @@ pub fn run(args: &InfoArgs) -> anyhow::Result<()> {
         Some(file) => Head::load(file)?,
         None => Head::reference()?,
     };
-    let report = report(&head);
+    let mut report = report(&head);
+    let unreachable = Unreachable::of(&head.calibration)?;
+    report["mouths_of_speech"] = unreachable.json();
     output::print(&if args.json {
         serde_json::to_string_pretty(&report)? + "\n"
     } else {
-        text(&report)
+        text(&report) + "\n" + &unreachable.text()
     })
 }
 

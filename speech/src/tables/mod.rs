@@ -10,6 +10,7 @@ use std::collections::BTreeMap;
 use std::path::Path;
 
 use mouthpiece_phonemes::Phone;
+use mouthpiece_rig::Articulation;
 
 pub(crate) use articulation::posture;
 pub use articulation::{ArticulationRow, Glide, Lips, Tongue};
@@ -89,6 +90,24 @@ impl Tables {
             articulation,
             dominance,
         })
+    }
+
+    /// The mouths that a head is asked for, with the names of their rows (`ey`, `ey.glide`): of every row that says
+    /// anything of the lips.
+    #[must_use]
+    pub fn mouths(&self) -> Vec<(String, Articulation)> {
+        let mut mouths = Vec::new();
+        for (phone, row) in Phone::ALL.iter().zip(&self.articulation) {
+            if row.lips.is_some() {
+                let whole = posture(row.lips.as_ref(), row.jaw_rad, &row.tongue);
+                mouths.push((phone.code().to_owned(), whole));
+            }
+            if let Some(glide) = row.glide.as_ref().filter(|glide| glide.lips.is_some()) {
+                let whole = posture(glide.lips.as_ref(), glide.jaw_rad, &glide.tongue);
+                mouths.push((format!("{}.glide", phone.code()), whole));
+            }
+        }
+        mouths
     }
 }
 
