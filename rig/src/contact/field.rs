@@ -120,12 +120,31 @@ impl Field {
                 self.most[x] = self.most[x].max(self.front[at(y)]);
             }
         }
+        // Lips slide: steps between tooth and gum are rounded off.
+        for _ in 0..2 {
+            self.smooth();
+        }
         let wide = windows(&self.edge, f32::min);
         self.edge = windows(&wide, f32::max);
         // What lies between two samples is bounded by both.
         self.most = (0..self.across)
             .map(|x| self.most[x].max(self.most[(x + 1).min(self.across - 1)]))
             .collect();
+    }
+
+    /// Takes the mean of each sample and its eight neighbours where all of them stand.
+    fn smooth(&mut self) {
+        let (before, across) = (self.front.clone(), self.across);
+        for y in 1..self.tall - 1 {
+            for x in 1..across - 1 {
+                let rows =
+                    [y - 1, y, y + 1].map(|y| &before[y * across + x - 1..y * across + x + 2]);
+                if rows.iter().all(|row| row.iter().all(|z| *z > NOTHING)) {
+                    self.front[y * across + x] =
+                        rows.iter().flat_map(|row| *row).sum::<f32>() / 9.0;
+                }
+            }
+        }
     }
 
     /// The sample to the left of a place and the share of the next one.

