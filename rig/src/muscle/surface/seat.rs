@@ -24,7 +24,7 @@ impl Sheet {
         let clear = self.over_bone(middle, bones, OVER_MM);
         let raw: Vec<f32> = (0..clear.len())
             .map(|k| {
-                let u = self.from_end(k / self.across);
+                let u = self.end_place(k / self.across);
                 let sink = along(self.shape.sink, u);
                 match clear[k] {
                     Some(clear) if clear > -sink && sink < HIDDEN_MM => clear,
@@ -56,7 +56,7 @@ impl Sheet {
             .zip(&self.lift)
             .enumerate()
             .map(|(k, (clear, at_rest))| {
-                let hidden = along(self.shape.sink, self.from_end(k / self.across)) >= HIDDEN_MM;
+                let hidden = along(self.shape.sink, self.end_place(k / self.across)) >= HIDDEN_MM;
                 match clear {
                     Some(clear) if !hidden => at_rest.max(OVERCOME * clear),
                     _ => *at_rest,

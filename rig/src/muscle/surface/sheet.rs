@@ -164,7 +164,7 @@ impl Sheet {
     }
 
     /// The same as widths and tendons go: a round muscle begins and ends at its ligament.
-    pub(super) fn from_end(&self, ring: usize) -> f32 {
+    pub(super) fn end_place(&self, ring: usize) -> f32 {
         let u = self.along(ring);
         if self.closed { u.min(1.0 - u) } else { u }
     }
@@ -205,7 +205,7 @@ impl Sheet {
         let mut knots = Vec::with_capacity(curves.len() + 2);
         for ring in 0..self.rings {
             // Half of the swelling goes sideways.
-            let beside = along(self.shape.beside, self.from_end(ring))
+            let beside = along(self.shape.beside, self.end_place(ring))
                 * self.swelling(ring, swelling).sqrt();
             let (first, last) = (curves[0][ring], curves[curves.len() - 1][ring]);
             let (before, after) = self.neighbours(ring);
@@ -280,7 +280,7 @@ impl Sheet {
     pub(super) fn half_thickness(&self, ring: usize, across: f32) -> f32 {
         let edge = 2.0 * self.fibres.len() as f32;
         let round = (1.0 - across.abs().powf(edge)).max(0.0).sqrt();
-        0.5 * along(self.shape.thick, self.from_end(ring)) * round
+        0.5 * along(self.shape.thick, self.end_place(ring)) * round
     }
 
     /// How far each ring's middle is out of the line between the ends.
@@ -306,9 +306,9 @@ impl Sheet {
             _ => self.bow.clone(),
         };
         let mut out = Vec::with_capacity(self.uvs.len());
-        for ring in 0..self.rings {
+        for (ring, (bow, at_rest)) in bows.iter().zip(&self.bow).enumerate() {
             // What has come out of the line is thickness: the inner side stays on the bone.
-            let bulge = (bows[ring] - self.bow[ring]).max(0.0);
+            let bulge = (bow - at_rest).max(0.0);
             let factor = self.swelling(ring, swelling).sqrt();
             let place = |j: usize, side: f32| {
                 let k = ring * self.across + j;
@@ -391,7 +391,7 @@ impl Sheet {
     /// Place along the flesh, 0 to 1; tendon is beyond. An end without tendon keeps clear of it.
     fn flesh(&self, ring: usize) -> f32 {
         let [origin, insertion] = self.shape.tendon;
-        let u = self.from_end(ring);
+        let u = self.end_place(ring);
         if self.closed {
             return (u - origin) / (1.0 - 2.0 * origin);
         }
