@@ -30,7 +30,7 @@ ROOT = Path(__file__).resolve().parent.parent
 SIZE = 800
 VIEWS = ["front", "34", "side"]
 # The smile is the one of rig/docs.
-EXPRESSIONS = json.loads((ROOT / "rig/docs/expressions.json").read_text())
+EXPRESSIONS = json.loads((ROOT / "rig/docs/faces.json").read_text())
 # Numbers of the face mesh's points along the lips, from the subject's right corner over the upper lip and back.
 OUTER = [61, 185, 40, 39, 37, 0, 267, 269, 270, 409, 291, 375, 321, 405, 314, 17, 84, 181, 91, 146]
 INNER = [78, 191, 80, 81, 82, 13, 312, 311, 310, 415, 308, 324, 318, 402, 317, 14, 87, 178, 88, 95]

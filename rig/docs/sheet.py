@@ -1,7 +1,10 @@
 #!/usr/bin/env python3
-"""Draws reference.png: the reference head, six expressions from three sides (see README.md). Needs Pillow.
+"""Draws the sheets of pictures beside this file (see README.md). Needs Pillow.
 
-Options given here are handed to `mouthpiece still`, as `--head OTHER.glb`.
+    sheet.py [reference]     reference.png: the reference head, six faces from three sides
+    sheet.py expressions     expressions.png: every expression of the library, from the front
+
+Options behind that are handed to `mouthpiece still`, as `--head OTHER.glb`.
 """
 
 import io
@@ -11,40 +14,68 @@ import sys
 import tempfile
 from pathlib import Path
 
-from PIL import Image
+from PIL import Image, ImageDraw, ImageFont
 
 HERE = Path(__file__).resolve().parent
 BINARY = HERE.parent.parent / "target/release/mouthpiece"
+LIBRARY = HERE.parent / "data/expressions.json"
 WIDTH, HEIGHT = 240, 300
 # The pictures are drawn larger than they are shown, for fine hair.
 SCALE = 2
 VIEWS = ["front", "34", "side"]
-BYTES_MAX = 250_000
+BYTES_MAX = 280_000
+# Of the sheet of expressions: faces a row, and what of the picture is shown, since hair and shirt say nothing.
+COLUMNS = 7
+FACE = (45, 75, 195, 255)
 
 
-def still(args, view):
+def still(args, options):
     with tempfile.TemporaryDirectory() as folder:
         path = Path(folder) / "still.png"
         size = f"{WIDTH * SCALE}x{HEIGHT * SCALE}"
-        command = [BINARY, "still", "--size", size, "--tier", "high", "--view", view, *args, *sys.argv[1:], "-o", path]
+        command = [BINARY, "still", "--size", size, "--tier", "high", *args, *options, "-o", path]
         subprocess.run(list(map(str, command)), check=True)
         return Image.open(path).convert("RGB").resize((WIDTH, HEIGHT), Image.LANCZOS)
 
 
-def main():
-    expressions = json.loads((HERE / "expressions.json").read_text())
-    sheet = Image.new("RGB", (WIDTH * len(expressions), HEIGHT * len(VIEWS)))
-    for column, args in enumerate(expressions.values()):
+def reference(options):
+    faces = json.loads((HERE / "faces.json").read_text())
+    sheet = Image.new("RGB", (WIDTH * len(faces), HEIGHT * len(VIEWS)))
+    for column, args in enumerate(faces.values()):
         for row, view in enumerate(VIEWS):
-            sheet.paste(still(args, view), (column * WIDTH, row * HEIGHT))
+            sheet.paste(still(["--view", view, *args], options), (column * WIDTH, row * HEIGHT))
+    return sheet
+
+
+def expressions(options):
+    names = list(json.loads(LIBRARY.read_text())["expressions"])
+    left, top, right, bottom = FACE
+    width, height = right - left, bottom - top
+    sheet = Image.new("RGB", (width * COLUMNS, height * -(-len(names) // COLUMNS)))
+    draw = ImageDraw.Draw(sheet)
+    for i, name in enumerate(names):
+        x, y = i % COLUMNS * width, i // COLUMNS * height
+        sheet.paste(still(["--expression", name], options).crop(FACE), (x, y))
+        draw.text((x + 5, y + 3), name, fill="white", font=ImageFont.load_default(12))
+    return sheet
+
+
+def save(sheet, path):
     # As many colours as the size allows.
     for colours in (256, 192, 128, 96, 64):
         packed = io.BytesIO()
-        sheet.quantize(colours, dither=Image.Dither.NONE).save(packed, "PNG", optimize=True)
+        sheet.quantize(colours, kmeans=2, dither=Image.Dither.NONE).save(packed, "PNG", optimize=True)
         if packed.tell() <= BYTES_MAX:
             break
-    (HERE / "reference.png").write_bytes(packed.getvalue())
-    print(f"{HERE / 'reference.png'}: {colours} colours, {packed.tell()} bytes")
+    path.write_bytes(packed.getvalue())
+    print(f"{path}: {colours} colours, {packed.tell()} bytes")
+
+
+def main():
+    sheets = {"reference": reference, "expressions": expressions}
+    words = sys.argv[1:]
+    name = words.pop(0) if words and words[0] in sheets else "reference"
+    save(sheets[name](words), HERE / f"{name}.png")
 
 
 if __name__ == "__main__":
