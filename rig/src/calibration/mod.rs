@@ -44,8 +44,8 @@ const VARIABLES: usize = SOLVED.len() + 1;
 const TERMS: usize = 1 + VARIABLES + VARIABLES * (VARIABLES + 1) / 2;
 /// Aperture, width, protrusion, lip to teeth.
 const MEASURES: usize = 4;
-/// Weight of a measure's error (per mm) and of a muscle's effort.
-const WEIGHTS: [f32; MEASURES] = [1.0, 0.45, 0.8, 0.9];
+/// Weight of a measure's error (per mm) and of a muscle's effort. A lip that is wanted at the teeth is wanted there above all.
+const WEIGHTS: [f32; MEASURES] = [1.0, 0.45, 0.8, 2.0];
 const EFFORT: [f32; SOLVED.len()] = [0.5, 0.5, 1.6, 1.0, 1.6, 0.3, 0.3];
 /// Weight that keeps both halves of the orbicularis oris alike in contraction and in protrusion.
 const ALIKE: f32 = 1.2;
