@@ -60,7 +60,7 @@ pub(super) fn attachments(head: &Head, numbering: &Numbering) -> Vec<Attachment>
     let spread_mm: Vec<f32> = (0..count)
         .map(|i| spread(reference[i]) * (1.0 - lid[i]).max(0.0))
         .collect();
-    let hold = spread_out(hold, fibres, numbering, &rest, &spread_mm);
+    let hold = spread_out(&hold, fibres, numbering, &rest, &spread_mm);
     let mut all = Vec::new();
     for i in 0..count {
         let mut found: Vec<(f32, usize)> = hold[i * fibres..][..fibres]
@@ -101,7 +101,7 @@ fn spread(p: Vec3) -> f32 {
 
 /// Stiffnesses spread over the mesh: `(1 - l² laplacian) new = old`, by some rounds of Jacobi's iteration.
 fn spread_out(
-    old: Vec<f32>,
+    old: &[f32],
     fibres: usize,
     numbering: &Numbering,
     rest: &[Vec3],
@@ -117,7 +117,7 @@ fn spread_out(
             neighbours[b].push((a, weight * spread_mm[b].powi(2)));
         }
     }
-    let (mut now, mut next) = (old.clone(), old.clone());
+    let (mut now, mut next) = (old.to_vec(), old.to_vec());
     for _ in 0..ROUNDS {
         for (i, list) in neighbours.iter().enumerate() {
             let row = &mut next[i * fibres..][..fibres];
