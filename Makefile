@@ -42,5 +42,6 @@ test: setup-test check build ## everything that CI runs
 	NODE_PATH=$(CURDIR)/target/node/node_modules $(CARGO) test --release --locked --workspace
 	.ci/live.sh
 
-bench: build ## the speed of each stage on this machine
+bench: build ## the speed of each stage on this machine; springs beside kernels in C, the simulation part by part
 	$(BINARY) bench
+	$(CARGO) bench --locked -p mouthpiece-rig --bench springs --bench simulation

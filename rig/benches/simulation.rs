@@ -148,16 +148,16 @@ fn main() {
         Rival::new("everything on", &head, &all, |_| {}),
         Rival::new("without contact", &head, &all, |s| s.set_contacts(false)),
         Rival::new("lips do not stop each other", &head, &all, |s| {
-            s.set_lip_contact(false)
+            s.set_lip_contact(false);
         }),
         Rival::new("without volume of the cheeks", &head, &all, |s| {
-            s.set_volume_stiffness(0.0)
+            s.set_volume_stiffness(0.0);
         }),
         Rival::new("muscles idle", &head, &idle, |_| {}),
         Rival::new("at rest", &head, &rest, |_| {}),
         Rival::new("layered tissue, everything on", &layered, &all, |_| {}),
         Rival::new("layered tissue without contact", &layered, &all, |s| {
-            s.set_contacts(false)
+            s.set_contacts(false);
         }),
     ];
     if !only_asked() {

@@ -39,7 +39,7 @@ fn soup() -> impl Strategy<Value = (Vec<Vec3>, Vec<[u32; 3]>, f32)> {
 
 fn forces(pass: &mut SpringPass, isa: Isa) -> Vec<DVec3> {
     pass.run(isa);
-    pass.forces().map(|f| f.as_dvec3()).collect()
+    pass.forces().map(Vec3::as_dvec3).collect()
 }
 
 /// Hooke's law edge by edge, and per vertex the sum of what was added: what rounding is a share of.
