@@ -37,7 +37,7 @@ fn skin_muscles_skull_and_springs_are_four_pictures() {
         }
     }
     // Red flesh over ivory, and ivory alone.
-    let red = |p: [u8; 3]| p[0] > 90 && p[0] > 2 * p[1].max(p[2]);
+    let red = |p: [u8; 3]| p[0] > 90 && u16::from(p[0]) > 2 * u16::from(p[1].max(p[2]));
     let [_, muscles, skull, _] = &shown;
     assert!(share(muscles, red) > 0.05, "{}", share(muscles, red));
     assert!(share(skull, red) < 0.005, "{}", share(skull, red));
