@@ -88,6 +88,13 @@ impl Muscles {
         &self.starts
     }
 
+    /// Bit k mod 128 is set when anything of fibre k is away from rest.
+    pub(crate) fn moved_bits(&self) -> u128 {
+        (0..)
+            .zip(&self.moved)
+            .fold(0, |bits, (k, moved)| bits | u128::from(*moved) << (k % 128))
+    }
+
     /// Contracts all fibres as `state` has it.
     pub(crate) fn contract(&mut self, head: &Head, state: &Controls, mandible: &Affine3A) {
         let jaw_still = state[Control::Jaw].abs() < STILL;
