@@ -21,12 +21,14 @@
 //! - Damping: [`DAMPING`] for all nodes, on the velocity against the skull.
 //! - Units: one of the stiffness table is 1500 mm/s² (`springs`); `k1`, `k2`: `volume`; forces: `strength`.
 //! - Restoring force `h`: fascia nodes to their places at rest on skull or mandible (by the default model's
-//!   share), softly on cheeks and lips and firmly on nose and hairline, as that model's springs to bone.
+//!   share), softly on cheeks and lips and firmly on nose and hairline, as that model's springs to bone; skin
+//!   nodes to their place over the fascia, since springs alone would let thin columns stay upside down.
 //! - The skull's constraint acts where the fascia has come near the bone; LEE's formula, which has no such
 //!   condition, would keep fascia from ever being pressed.
 //! - Crossed springs between skin and fascia: LEE leaves them out, his own source has them (`springs`).
 //!
-//! Lids are carried as in the default model: no layers of skin close an eye.
+//! Lids are carried as in the default model: no layers of skin close an eye. Their columns are loose
+//! (`springs`), for both of a lid's sides are skin and lie within a millimetre.
 
 mod law;
 mod layers;
@@ -54,6 +56,10 @@ const DAMPING: f32 = 100.0;
 /// Restoring force of the fascia, 1/s²: everywhere, and its part of the default model's springs to bone.
 const RESTORE_SOFT: f32 = 9_500.0;
 const RESTORE_BONE: f32 = 0.6;
+/// The same of the skin to its place over its fascia, 1/s².
+const RESTORE_OVER: f32 = 10_000.0;
+/// A lid's column is held at least so firmly, 1/s²: where the lid itself holds it less, at rest.
+const LID_LEAST: f32 = 15_000.0;
 /// A node counts as heavier by this share of its springs' stiffness times the step's square. With a quarter of
 /// twice the sum (Gershgorin's bound of what vibrates) the step would be just stable.
 const INERTIA: f32 = 0.35;
@@ -101,6 +107,7 @@ pub(crate) struct Layered {
     out: Vec<Vec4>,
     clearance: Vec<f32>,
     restore: Vec<f32>,
+    over: f32,
     jawed: Vec<Jawed>,
     lids: Vec<LidHold>,
     springs: Springs,
@@ -121,6 +128,11 @@ impl Layered {
             hold[lid.vertex as usize] = lid.hold;
         }
         let hold = numbering.of(&hold);
+        // The inner side of a lid is wet, as that of the lips, and above them.
+        let wet = numbering.of(&head.skin.wet);
+        let lidded: Vec<bool> = (0..hold.len())
+            .map(|i| hold[i] > 0.0 || (wet[i] > 0.0 && reference[i].y > 0.0))
+            .collect();
 
         let four = |p: &Vec3| p.extend(0.0);
         let columns = layers.skin.iter().zip(&layers.fascia);
@@ -164,7 +176,7 @@ impl Layered {
             movable,
             skin: Nodes::at(&layers.skin),
             fascia: Nodes::at(&layers.fascia[..movable]),
-            springs: Springs::new(&numbering.edges, &rest, &skull, movable, scale),
+            springs: Springs::new(&numbering.edges, &rest, &skull, &lidded, scale),
             prisms: Prisms::new(&layers.triangles, &rest, scale),
             rings: own::rings(head, &layers, movable, &side, &hold),
             actuators,
@@ -177,6 +189,7 @@ impl Layered {
             out,
             clearance,
             restore,
+            over: RESTORE_OVER * scale,
             jawed,
             lids,
         }
@@ -212,6 +225,10 @@ impl Layered {
         for i in 0..self.movable {
             let back = (self.home[i] - self.place[i][1]) * self.restore[i];
             self.force[i][1] += back.with_w(self.restore[i]);
+            let over = (self.rest[i][0] - self.rest[i][1]) + self.place[i][1] - self.place[i][0];
+            let over = (over * self.over).with_w(self.over);
+            self.force[i][0] += over;
+            self.force[i][1] += Vec4::new(-over.x, -over.y, -over.z, over.w);
         }
     }
 
@@ -263,8 +280,10 @@ impl Layered {
             for layer in 0..2 {
                 let home = Vec3A::from_vec4(self.rest[i][layer]);
                 let target = centre + turn.mul_vec3a(home - centre);
-                let back = (target.extend(0.0) - self.place[i][layer]) * hold.stiffness;
-                self.force[i][layer] += back.with_w(hold.stiffness);
+                let least = (LID_LEAST - hold.stiffness).max(0.0);
+                let back = (target.extend(0.0) - self.place[i][layer]) * hold.stiffness
+                    + (self.rest[i][layer] - self.place[i][layer]) * least;
+                self.force[i][layer] += back.with_w(hold.stiffness + least);
             }
         }
     }

@@ -31,7 +31,7 @@ pub(super) struct Ring {
 /// Radius that a sphincter's strength is meant at, mm: nearer to its axis it draws less.
 const RADIUS_MM: f32 = 20.0;
 /// Force of protrusion per mm that the default model protrudes a free fibre by, mm/s² per mass.
-const PROTRUDE_PER_MM: f32 = 6_000.0;
+const PROTRUDE_PER_MM: f32 = 11_000.0;
 
 /// How a node lies to a fibre: shares of the way along it and distance, and the direction to its start.
 struct Nearest {

@@ -23,6 +23,8 @@ const UNIT: f32 = 1_500.0;
 /// Stiffness against turning over, of the second phase's. LEE's sign `I_s` turns the pull of an inverted spring
 /// round; along the spring itself that would push a sheared column sideways.
 const TURNED: f32 = 2.0;
+/// What springs down and across keep in lids.
+const LOOSE: f32 = 0.03;
 /// Least length that is divided by, mm.
 const SHORTEST_MM: f32 = 1e-3;
 
@@ -31,6 +33,8 @@ const SHORTEST_MM: f32 = 1e-3;
 struct Edge {
     per_rest_mm: Vec4,
     ends: [u32; 2],
+    /// What its crossed springs keep.
+    keep: f32,
 }
 
 /// Places or forces of a column: skin, then fascia. What is left of a force's four floats sums up the
@@ -41,36 +45,39 @@ pub(super) type Columns = [[Vec4; 2]];
 #[derive(Clone, Debug)]
 pub(super) struct Springs {
     edges: Vec<Edge>,
-    /// Per node: one over the rest lengths of skin to fascia and fascia to skull.
-    down: Vec<[f32; 2]>,
+    /// Per node: one over the rest lengths of skin to fascia and fascia to skull, and what they keep.
+    down: Vec<([f32; 2], f32)>,
     along: Stiffness,
     across: Stiffness,
 }
 
 impl Springs {
-    /// `scale` is what stiffnesses per mass are multiplied by.
+    /// Columns that are `loose` keep little of their springs; `scale` is what stiffnesses per mass are multiplied by.
     pub(super) fn new(
         edges: &[[u32; 2]],
         rest: &Columns,
         skull: &[Vec4],
-        movable: usize,
+        loose: &[bool],
         scale: f32,
     ) -> Self {
         let unit = UNIT * scale;
         let crossed = DERMAL_FATTY.map(|k| k * CROSSED);
+        let keep = |loose| if loose { LOOSE } else { 1.0 };
         let edges = edges
             .iter()
             .map(|&ends| Edge {
                 per_rest_mm: length(between(rest, ends)).recip(),
                 ends,
+                keep: keep(ends.iter().any(|i| loose[*i as usize])),
             })
             .collect();
-        let down = (0..movable)
-            .map(|i| {
-                let [skin, fascia] = rest[i];
-                [(skin - fascia), (fascia - skull[i])].map(|d| d.length().max(SHORTEST_MM).recip())
-            })
-            .collect();
+        let down = loose[..skull.len()].iter().enumerate().map(|(i, &loose)| {
+            let [skin, fascia] = rest[i];
+            let per_rest_mm =
+                [skin - fascia, fascia - skull[i]].map(|d| d.length().max(SHORTEST_MM).recip());
+            (per_rest_mm, keep(loose))
+        });
+        let down = down.collect();
         Self {
             edges,
             down,
@@ -98,7 +105,10 @@ impl Springs {
         const OPPOSITE: Vec4 = vec4(-1.0, -1.0, -1.0, 1.0);
         for edge in &self.edges {
             let d = between(place, edge.ends);
-            let law = pull(length(d), edge.per_rest_mm, &self.along);
+            let mut law = pull(length(d), edge.per_rest_mm, &self.along);
+            let keep = vec4(1.0, 1.0, edge.keep, edge.keep);
+            law.per_mm *= keep;
+            law.stiffness *= keep;
             let pulls = Mat4::from_cols(
                 d.x_axis * law.per_mm,
                 d.y_axis * law.per_mm,
@@ -127,9 +137,12 @@ impl Springs {
             let ([a, b], [c, d]) = (step(i), step(j));
             let upright = vec4(a.dot(out[i]), b.dot(out[i]), c.dot(out[j]), d.dot(out[j]));
             let rows = Mat4::from_cols(a, b, c, d).transpose();
-            let [p, q] = [self.down[i], self.down[j]];
+            let [(p, keep_i), (q, keep_j)] = [self.down[i], self.down[j]];
+            let keep = vec4(keep_i, keep_i, keep_j, keep_j);
             let per_rest = vec4(p[0], p[1], q[0], q[1]);
-            let law = pull(length(rows), per_rest, &self.across);
+            let mut law = pull(length(rows), per_rest, &self.across);
+            law.per_mm *= keep;
+            law.stiffness *= keep;
             // What has turned over is pushed back along its own normal.
             let back = self.across.second * per_rest * TURNED;
             let push = back * upright.max(Vec4::ZERO);
