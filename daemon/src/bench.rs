@@ -1,7 +1,9 @@
 //! `mouthpiece bench`: speed of each stage on this machine, on the demo's sentence.
 //!
-//! Each figure is of the code that the product runs, not of a copy. Run it on a quiet machine: a
-//! figure says what one run took, without repetition or statistics.
+//! Each figure is of the code that the product runs, not of a copy. Run it on a quiet machine: but for the
+//! simulation's, a figure says what one run took, without repetition or statistics.
+
+mod simulation;
 
 use std::hint::black_box;
 use std::sync::Arc;
@@ -9,7 +11,7 @@ use std::time::Instant as Wall;
 
 use indicatif::ProgressBar;
 use mouthpiece_render::{FRAMES_IN_FLIGHT, Gpu, Offscreen};
-use mouthpiece_rig::{Head, KeyFrame, STEP_TICKS, Simulation, TICK_RATE, TissueModel};
+use mouthpiece_rig::{KeyFrame, STEP_TICKS, TICK_RATE};
 use serde_json::{Map, Value, json};
 
 use crate::cli::{BenchArgs, Fps, LookArgs, Size, TierArg, ViewArg};
@@ -55,11 +57,15 @@ pub fn run(args: &BenchArgs) -> anyhow::Result<()> {
     let first_picture_ms = started.elapsed().as_secs_f64() * 1e3;
 
     let ticks = utterance.ticks;
+    let times = (0..ticks).step_by(STEP_TICKS as usize);
+    let controls: Vec<_> = times.map(|time| part.controls_at(time)).collect();
+    let [springs, layered] = simulation::models(&cast.head, &controls);
     let report = json!({
         "first_picture_ms": rounded(first_picture_ms),
         "speech": speech(&part, ticks),
-        "simulation": simulation(&cast.head, &part, ticks),
-        "simulation_layered": simulation(&layered(&cast.head), &part, ticks),
+        "simulation": springs,
+        "simulation_layered": layered,
+        "spring_pass": simulation::spring_pass(&cast.head),
         "render": render(&cast, &gpu, &mut performance)?,
         "export": export(&cast, utterance)?,
         "rss_mb": peak_mb(),
@@ -89,33 +95,6 @@ fn speech(part: &Part, ticks: i64) -> Value {
         black_box(part.controls_at(time));
     }
     json!({ "realtime_factor": rounded(seconds(ticks) / started.elapsed().as_secs_f64()) })
-}
-
-/// The same head with the other tissue.
-fn layered(head: &Head) -> Arc<Head> {
-    let mut head = head.clone();
-    head.tissue.model = TissueModel::Layered;
-    Arc::new(head)
-}
-
-fn simulation(head: &Arc<Head>, part: &Part, ticks: i64) -> Value {
-    let controls: Vec<_> = (0..ticks)
-        .step_by(STEP_TICKS as usize)
-        .map(|time| part.controls_at(time))
-        .collect();
-    let mut simulation = Simulation::new(Arc::clone(head));
-    let started = Wall::now();
-    for controls in &controls {
-        simulation.step(controls);
-    }
-    let wall = started.elapsed().as_secs_f64();
-    let springs = simulation.spring_count();
-    let spring_steps = (controls.len() * springs).max(1) as f64;
-    json!({
-        "realtime_factor": rounded(seconds(ticks) / wall),
-        "springs": springs,
-        "ns_per_spring_step": rounded(wall * 1e9 / spring_steps),
-    })
 }
 
 /// Time from picture to picture while pictures overlap, as in an export.
@@ -182,10 +161,13 @@ fn look(tier: TierArg) -> LookArgs {
 
 /// The most memory that this process has held, where the system tells.
 fn peak_mb() -> Option<f64> {
+    Some(rounded(status_kb("VmHWM:")? / 1024.0))
+}
+
+fn status_kb(entry: &str) -> Option<f64> {
     let status = std::fs::read_to_string("/proc/self/status").ok()?;
-    let line = status.lines().find(|line| line.starts_with("VmHWM:"))?;
-    let kb: f64 = line.split_whitespace().nth(1)?.parse().ok()?;
-    Some(rounded(kb / 1024.0))
+    let line = status.lines().find(|line| line.starts_with(entry))?;
+    line.split_whitespace().nth(1)?.parse().ok()
 }
 
 /// `a.b.c  value`, a line each.
