@@ -34,7 +34,7 @@ mod labels;
 mod mouth;
 mod outline;
 mod readme;
-mod sound;
 mod show;
+mod sound;
 mod still;
 mod usage;
