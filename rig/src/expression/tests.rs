@@ -284,7 +284,7 @@ fn speech_keeps_its_lips_and_the_brows_keep_the_expression() {
         assert_eq!(both[control], speech[control], "{}", control.name());
     }
     let eyes = Control::OrbicularisOculiOrbital;
-    assert_eq!(both[eyes], face[eyes]);
+    assert!((both[eyes] - face[eyes]).abs() < 1e-6);
     assert!(
         both[Control::ZygomaticusMajor] > 0.2,
         "the corners smile on"
