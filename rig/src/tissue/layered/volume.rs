@@ -5,12 +5,15 @@
 //! the prism's middle at rest (`k2`). Here `k1` is per mm of mean thickness gained, over all the prism's sides, so
 //! that large and small, flat and tall prisms are held alike; the normal counts by its area, as it
 //! does in the gradient of the volume, so that a slender triangle does not push where it happens to face.
+//!
+//! It holds less than the default model's cheeks do: a cheek under a full smile changes by 6.2 % instead of 7.7 %. The
+//! force acts on skin alone, as LEE has it, and conserves no momentum; six times stiffer it held 5.9 % and tore.
 
 use glam::Vec3A;
 
 use super::springs::Columns;
 
-/// Per mass and mm of thickness, 1/s²: thrice the spring between skin and fascia in the mean column.
+/// Per mass and mm of thickness, 1/s²: some four times the spring between skin and fascia in a mean column.
 const K1: f32 = 40_000.0;
 /// Per mass and mm, 1/s²: so much that skin pressed together, where springs are slack, keeps one shape; more would
 /// hold prisms against turning with the jaw.
