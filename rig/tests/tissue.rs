@@ -143,10 +143,11 @@ fn both_survive_ten_minutes_of_any_controls() {
 #[test]
 fn without_stiffness_of_the_muscles_no_contraction_moves_the_skin() {
     for model in [TissueModel::Springs, TissueModel::Layered] {
-        let rest = undisturbed(model);
+        let rest = head(model).rest_frame();
         let mut cut = Simulation::new(Arc::clone(head(model)));
+        // Contact may move skin at rest; this is of the tissue alone.
+        cut.set_contacts(false);
         cut.set_muscle_stiffness(0.0);
-        settled(&mut cut, &Controls::default(), 480);
         for muscle in Muscle::ALL {
             let mut controls = Controls::default();
             controls[Control::contraction(muscle)] = 1.0;
