@@ -65,6 +65,8 @@ const LID_LEAST: f32 = 15_000.0;
 const INERTIA: f32 = 0.35;
 /// Nothing in a face is faster, mm/s: lips close with some 300.
 const FASTEST_MM_S: f32 = 2_000.0;
+/// No node goes farther from where bones carry it, mm: full smiles move the cheek by 15.
+const FARTHEST_MM: f32 = 18.0;
 /// The fascia comes no nearer to the bone than this share of its distance at rest.
 const CLEARANCE: f32 = 0.15;
 /// The lids aim past each other by this factor, since the skin round them holds them back.
@@ -315,6 +317,11 @@ impl Layered {
                 place,
                 &mut self.fascia.velocity[i],
             );
+            let home = Vec3A::from_vec4(self.home[i]);
+            *place = home + (*place - home).clamp_length_max(FARTHEST_MM);
+            let over = home + Vec3A::from_vec4(self.rest[i][0] - self.rest[i][1]);
+            let skin = &mut self.skin.place[i];
+            *skin = over + (*skin - over).clamp_length_max(FARTHEST_MM);
             let deep = gap(*place).min(0.0);
             if deep < 0.0 {
                 *place -= normal * deep;
