@@ -5,12 +5,22 @@ use glam::{Vec3, Vec3A};
 use crate::tissue::Numbering;
 use crate::{Head, Stencils};
 
+/// Terms of a block: a vertex with six neighbours fits into one.
+const TERMS: usize = 8;
+
 /// Drawn places of some vertices.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Drawn {
     /// Where each row ends; a row starts where the one before ends.
     ends: Vec<u32>,
-    terms: Vec<(u32, f32)>,
+    blocks: Vec<Block>,
+}
+
+/// Some terms of a row; what a row leaves over has no weight.
+#[derive(Clone, Copy, Debug)]
+struct Block {
+    nodes: [u32; TERMS],
+    weights: [f32; TERMS],
 }
 
 /// The limit of a head's skin, while contacts are set up.
@@ -61,8 +71,8 @@ impl<'a> Limit<'a> {
 impl Drawn {
     /// Adds the row of a vertex that is the given node.
     pub(super) fn push(&mut self, limit: &Limit<'_>, vertex: u32, node: u32) {
-        self.terms.extend(limit.row(vertex, node));
-        self.close();
+        let terms: Vec<(u32, f32)> = limit.row(vertex, node).collect();
+        self.close(&terms);
     }
 
     /// Adds the row of a place between vertices that move, given their shares; whether they all do.
@@ -74,38 +84,47 @@ impl Drawn {
         let Some(nodes) = nodes else {
             return false;
         };
+        let mut terms: Vec<(u32, f32)> = Vec::new();
         for (&(vertex, share), node) in mix.iter().zip(nodes) {
-            let row = limit.row(vertex, node);
-            self.terms.extend(row.map(|(other, w)| (other, w * share)));
+            for (other, weight) in limit.row(vertex, node) {
+                match terms.iter_mut().find(|(known, _)| *known == other) {
+                    Some((_, sum)) => *sum += weight * share,
+                    None => terms.push((other, weight * share)),
+                }
+            }
         }
-        self.close();
+        self.close(&terms);
         true
     }
 
-    /// Ends a row, which may be empty.
-    pub(super) fn close(&mut self) {
-        self.ends.push(self.terms.len() as u32);
+    fn close(&mut self, terms: &[(u32, f32)]) {
+        for terms in terms.chunks(TERMS) {
+            let term = |i: usize| terms.get(i).copied().unwrap_or((terms[0].0, 0.0));
+            self.blocks.push(Block {
+                nodes: std::array::from_fn(|i| term(i).0),
+                weights: std::array::from_fn(|i| term(i).1),
+            });
+        }
+        self.ends.push(self.blocks.len() as u32);
     }
 
-    fn range(&self, row: usize) -> std::ops::Range<usize> {
-        let start = row.checked_sub(1).map_or(0, |before| self.ends[before]);
-        start as usize..self.ends[row] as usize
-    }
-
-    /// The vertex's own node; none of an empty row.
-    #[inline]
-    pub(super) fn node(&self, row: usize) -> Option<usize> {
-        let terms = &self.terms[self.range(row)];
-        terms.first().map(|(node, _)| *node as usize)
+    /// Rows so far.
+    pub(super) fn rows(&self) -> usize {
+        self.ends.len()
     }
 
     /// Where the row's vertex is drawn.
     #[inline]
     pub(super) fn at(&self, row: usize, places: &[Vec3A]) -> Vec3A {
-        let mut sum = Vec3A::ZERO;
-        for &(node, weight) in &self.terms[self.range(row)] {
-            sum += places[node as usize] * weight;
+        let start = if row == 0 { 0 } else { self.ends[row - 1] };
+        // Two sums: one would wait for itself at each term.
+        let (mut even, mut odd) = (Vec3A::ZERO, Vec3A::ZERO);
+        for block in &self.blocks[start as usize..self.ends[row] as usize] {
+            for i in (0..TERMS).step_by(2) {
+                even += places[block.nodes[i] as usize] * block.weights[i];
+                odd += places[block.nodes[i + 1] as usize] * block.weights[i + 1];
+            }
         }
-        sum
+        even + odd
     }
 }

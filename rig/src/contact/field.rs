@@ -1,8 +1,9 @@
 //! A row of teeth with its gums from the front, as a height field: how far forward it stands at each place, and where
 //! its biting edge is.
 
-use glam::{Vec3, Vec3A, vec3a};
+use glam::{Vec3, Vec3A, Vec4, vec3a};
 
+use super::four::{Places, bits};
 use crate::Mesh;
 
 /// Distance of the field's samples, mm.
@@ -31,14 +32,25 @@ pub(super) struct Field {
     bottom: f32,
     /// By height, then across.
     front: Vec<f32>,
-    /// Per sample across: the biting edge's height times `up`, and the most forward sample.
+    /// Per sample across: the biting edge's height times `up`.
     edge: Vec<f32>,
-    most: Vec<f32>,
+    /// By height, then across, as far as a point may be off: how far forward something stands in the neighbourhood,
+    /// and that much more. The greatest of them.
+    reach: Vec<f32>,
+    most: f32,
+    /// How far below `bottom` samples of `reach` begin, and how many there are along the height.
+    below: f32,
+    high: usize,
 }
 
 impl Field {
-    /// None where nothing of the meshes lies in the middle of the arch.
-    pub(super) fn new<'a>(meshes: impl Iterator<Item = &'a Mesh>, up: f32) -> Option<Self> {
+    /// None where nothing of the meshes lies in the middle of the arch. Points will be looked for that may be
+    /// `near_mm` off.
+    pub(super) fn new<'a>(
+        meshes: impl Iterator<Item = &'a Mesh>,
+        up: f32,
+        near_mm: f32,
+    ) -> Option<Self> {
         let triangles: Vec<[Vec3; 3]> = meshes
             .flat_map(|m| {
                 let at = |v: u32| m.positions.get(v as usize).copied().unwrap_or_default();
@@ -58,12 +70,16 @@ impl Field {
             bottom,
             front: vec![NOTHING; across * tall],
             edge: vec![f32::MAX; across],
-            most: vec![NOTHING; across],
+            reach: Vec::new(),
+            most: NOTHING,
+            below: 0.0,
+            high: 0,
         };
         for t in &triangles {
             field.raise(t);
         }
         field.close();
+        field.look(near_mm);
         Some(field)
     }
 
@@ -117,7 +133,6 @@ impl Field {
                 if self.front[at(y)] <= NOTHING {
                     self.front[at(y)] = self.front[at(y.clamp(first, last))];
                 }
-                self.most[x] = self.most[x].max(self.front[at(y)]);
             }
         }
         // Lips slide: steps between tooth and gum are rounded off.
@@ -126,10 +141,27 @@ impl Field {
         }
         let wide = windows(&self.edge, f32::min);
         self.edge = windows(&wide, f32::max);
-        // What lies between two samples is bounded by both.
-        self.most = (0..self.across)
-            .map(|x| self.most[x].max(self.most[(x + 1).min(self.across - 1)]))
+    }
+
+    /// Bounds the front round each sample, edges included: a point that is so far off may be held there.
+    fn look(&mut self, near_mm: f32) {
+        // A sample stands for what lies between it and the next ones.
+        let cells = (near_mm / CELL_MM).ceil() as usize;
+        self.below = cells as f32 * CELL_MM;
+        self.high = self.tall + cells;
+        self.reach = (0..self.high * self.across)
+            .map(|i| {
+                let (x, y) = (i % self.across, (i / self.across) as i32 - cells as i32);
+                let columns = x.saturating_sub(cells)..(x + cells + 2).min(self.across);
+                let first = (y - cells as i32).clamp(0, self.tall as i32 - 1) as usize;
+                let last = (y + cells as i32 + 1).clamp(0, self.tall as i32 - 1) as usize;
+                let front = (first..=last)
+                    .flat_map(|y| &self.front[y * self.across..][columns.clone()])
+                    .fold(NOTHING, |most: f32, z| most.max(*z));
+                front + near_mm
+            })
             .collect();
+        self.most = self.reach.iter().fold(NOTHING, |most, z| most.max(*z));
     }
 
     /// Takes the mean of each sample and its eight neighbours where all of them stand.
@@ -152,22 +184,35 @@ impl Field {
     fn column(&self, x: f32) -> Option<(usize, f32)> {
         let across = (x - self.left) * (1.0 / CELL_MM);
         let inside = across >= 0.0 && across < (self.across - 1) as f32;
-        inside.then(|| (across as usize, across - (across as usize) as f32))
+        let x = across as i32;
+        inside.then_some((x as usize, across - x as f32))
     }
 
-    /// Whether a point may be held by the row, or may be when it is `near_mm` nearer.
+    /// Bits of the points that may be held by the row, were they as much off as was said.
     #[inline]
-    pub(super) fn may_hold(&self, p: Vec3A, near_mm: f32) -> bool {
-        let height = p.y * self.up - self.bottom;
-        if height < -near_mm || height > TALL_MM {
-            return false;
+    pub(super) fn near(&self, at: &Places) -> u32 {
+        let tall = at.y * self.up - Vec4::splat(self.bottom - self.below);
+        let tall = tall * (1.0 / CELL_MM);
+        let across = (at.x - Vec4::splat(self.left)) * (1.0 / CELL_MM);
+        let inside = tall.cmpge(Vec4::ZERO)
+            & tall.cmplt(Vec4::splat(self.high as f32))
+            & across.cmpge(Vec4::ZERO)
+            & across.cmplt(Vec4::splat(self.across as f32))
+            & at.z.cmplt(Vec4::splat(self.most));
+        let mask = inside.bitmask();
+        if mask == 0 {
+            return 0;
         }
-        self.column(p.x)
-            .is_some_and(|(x, _)| p.z < self.most[x] + near_mm)
+        let (tall, across, z) = (tall.to_array(), across.to_array(), at.z.to_array());
+        bits(mask).fold(0, |near, lane| {
+            let sample = tall[lane] as i32 as usize * self.across + across[lane] as i32 as usize;
+            near | u32::from(z[lane] < self.reach[sample]) << lane
+        })
     }
 
     /// The way out for a point in the row or nearer than `clearance_mm`: past the edge where that is the shorter one by
     /// `rather_ahead_mm`, else ahead.
+    #[inline]
     pub(super) fn push(&self, p: Vec3A, clearance_mm: f32, rather_ahead_mm: f32) -> Option<Vec3A> {
         let (x, share) = self.column(p.x)?;
         let edge = self.edge[x] + (self.edge[x + 1] - self.edge[x]) * share;
@@ -177,7 +222,8 @@ impl Field {
             return None;
         }
         let tall = tall.max(0.0);
-        let (y, rise) = (tall as usize, tall - (tall as usize) as f32);
+        let y = tall as i32;
+        let (y, rise) = (y as usize, tall - y as f32);
         let at = |y: usize, x: usize| self.front[y * self.across + x];
         let (a, b, c, d) = (at(y, x), at(y, x + 1), at(y + 1, x), at(y + 1, x + 1));
         let (low, high) = (a + (b - a) * share, c + (d - c) * share);
@@ -186,14 +232,15 @@ impl Field {
         let slope_y = (high - low) * (self.up / CELL_MM);
         let per = 1.0 / (1.0 + slope_x * slope_x + slope_y * slope_y);
         // Both along the front's normal.
-        let behind = (front - p.z) * per.sqrt() + clearance_mm;
+        let per = per.sqrt();
+        let behind = (front - p.z) * per + clearance_mm;
         if behind <= 0.0 || front - p.z > BEHIND_MM {
             return None;
         }
         Some(if inside + rather_ahead_mm < behind {
             vec3a(0.0, -inside * self.up, 0.0)
         } else {
-            vec3a(-slope_x, -slope_y, 1.0) * (per.sqrt() * behind)
+            vec3a(-slope_x, -slope_y, 1.0) * (per * behind)
         })
     }
 }
@@ -226,7 +273,7 @@ mod tests {
             triangles: vec![[0, 1, 2], [0, 2, 3]],
             ..Mesh::default()
         };
-        Field::new([&mesh].into_iter(), 1.0).unwrap()
+        Field::new([&mesh].into_iter(), 1.0, 0.6).unwrap()
     }
 
     #[test]

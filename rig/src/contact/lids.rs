@@ -1,9 +1,10 @@
 //! Lids slide over the eyeballs: what a lid carries is drawn outside the ball and its cornea, which turns with the
 //! gaze.
 
-use glam::{Quat, Vec3A};
+use glam::{Quat, Vec3A, Vec4};
 
 use super::drawn::{Drawn, Limit};
+use super::four::{FOUR, Four, List, Places, bits};
 use crate::simulation::STEP_S;
 use crate::tissue::Nodes;
 use crate::{Control, Controls, Eye, Head};
@@ -12,6 +13,8 @@ use crate::{Control, Controls, Eye, Head};
 const PASSES: usize = 3;
 /// Lids keep this far from the ball, mm: the surface between points that are looked at bows less.
 const CLEARANCE_MM: f32 = 0.15;
+/// What was no deeper than this, mm, is not looked at again in the same step.
+const DONE_MM: f32 = 0.02;
 /// A point nearer than this by its rest is worked out as it is drawn, mm.
 const NEAR_MM: f32 = 0.4;
 /// The cornea's form is kept where the cosine of the angle to the gaze is at least this, in so many steps.
@@ -32,86 +35,125 @@ struct Ball {
     centre: Vec3A,
     /// Radius by the cosine of the angle to the gaze, from [`LEAST_COSINE`] to 1.
     radius: [f32; STEPS + 1],
-    /// Node, and from there to where it is drawn at rest.
-    points: Vec<(u32, Vec3A)>,
+    /// Squares of the distances within which a point may be nearer than [`NEAR_MM`]: over the cornea, and elsewhere.
+    reach: [f32; 2],
+    /// Points by their nodes, from the centre.
+    fours: Vec<Four>,
+    /// A row a point.
     drawn: Drawn,
+    /// Points that the pass before was not done with.
+    touched: List,
 }
 
 impl Lids {
     pub(super) fn new(head: &Head, limit: &Limit<'_>) -> Self {
         let ball = |left: bool| {
             let eye = head.eyes[usize::from(!left)];
-            let mut ball = Ball {
-                centre: eye.centre.into(),
-                radius: form(head, eye, if left { "eye_l" } else { "eye_r" }),
-                points: Vec::new(),
-                drawn: Drawn::default(),
-            };
+            let (mut points, mut drawn) = (Vec::new(), Drawn::default());
             let rest = &head.skin.mesh.positions;
             for lid in head.lids.iter().filter(|lid| lid.left == left) {
                 if let Some(node) = limit.numbering().moving(lid.vertex) {
-                    let drawn = limit.at(lid.vertex, rest) - rest[lid.vertex as usize];
-                    ball.points.push((node, drawn.into()));
-                    ball.drawn.push(limit, lid.vertex, node);
+                    let at = limit.at(lid.vertex, rest) - rest[lid.vertex as usize];
+                    points.push(([node; 2], at - eye.centre));
+                    drawn.push(limit, lid.vertex, node);
                 }
             }
-            ball
+            let radius = form(head, eye, if left { "eye_l" } else { "eye_r" });
+            let most = radius.iter().fold(0.0, |most: f32, r| most.max(*r));
+            Ball {
+                centre: eye.centre.into(),
+                reach: [most, radius[0]].map(|r| (r + NEAR_MM) * (r + NEAR_MM)),
+                radius,
+                fours: Four::all(&points),
+                touched: List::with_room(points.len()),
+                drawn,
+            }
         };
         Self {
             eyes: [ball(true), ball(false)],
         }
     }
 
-    pub(super) fn resolve(&self, skin: &mut Nodes, state: &Controls) {
+    pub(super) fn resolve(&mut self, skin: &mut Nodes, state: &Controls) {
         let gaze = Quat::from_rotation_y(state[Control::GazeYaw])
             * Quat::from_rotation_x(-state[Control::GazePitch]);
         let axis = gaze * Vec3A::Z;
-        for ball in &self.eyes {
+        for ball in &mut self.eyes {
             ball.hold(skin, axis);
         }
     }
 }
 
 impl Ball {
-    fn hold(&self, skin: &mut Nodes, axis: Vec3A) {
-        for _ in 0..PASSES {
-            let mut touched = false;
-            for (i, &(node, drawn)) in self.points.iter().enumerate() {
-                let node = node as usize;
-                let about = skin.place[node] + drawn - self.centre;
-                if self.depth(about, axis) < -NEAR_MM {
-                    continue;
+    fn hold(&mut self, skin: &mut Nodes, axis: Vec3A) {
+        let mut touched = std::mem::take(&mut self.touched);
+        touched.clear();
+        for (i, four) in self.fours.iter().enumerate() {
+            let at = four.at(&skin.place);
+            for lane in bits(self.near(&at, axis) & four.some) {
+                let point = i * FOUR + lane;
+                if self.push(point, skin, axis) {
+                    touched.push(point);
                 }
-                let out = self.drawn.at(i, &skin.place) - self.centre;
-                let depth = self.depth(out, axis) + CLEARANCE_MM;
-                let distance = out.length();
-                if depth <= 0.0 || distance < CENTRE_MM {
-                    continue;
-                }
-                touched = true;
-                let normal = out / distance;
-                skin.place[node] += normal * depth;
-                // Only the speed that brought it there goes: no rebound, and what is pressed lies still.
-                let inwards = skin.velocity[node].dot(normal).min(0.0);
-                let inwards = inwards.max(-depth / STEP_S);
-                skin.velocity[node] -= normal * inwards;
-            }
-            if !touched {
-                break;
             }
         }
+        // All are pushed outwards: what was free stays free.
+        for _ in 1..PASSES {
+            touched.keep(|point| self.push(point, skin, axis));
+        }
+        self.touched = touched;
     }
 
-    /// How deep a point lies in the ball, from its centre; below 0 outside.
+    /// Bits of the points that may be near the ball, from its centre.
     #[inline]
-    fn depth(&self, out: Vec3A, axis: Vec3A) -> f32 {
+    fn near(&self, at: &Places, axis: Vec3A) -> u32 {
+        let square = at.x * at.x + at.y * at.y + at.z * at.z;
+        let along = at.x * axis.x + at.y * axis.y + at.z * axis.z;
+        let ahead = along.max(Vec4::ZERO);
+        let ahead = (ahead * ahead).cmpge(square * (LEAST_COSINE * LEAST_COSINE));
+        let [cornea, ball] = self.reach.map(Vec4::splat);
+        let near = square.cmplt(Vec4::select(ahead, cornea, ball)).bitmask();
+        if near == 0 {
+            return 0;
+        }
+        let distance = square.to_array().map(f32::sqrt);
+        let cosine = (along / Vec4::from_array(distance).max(Vec4::splat(CENTRE_MM))).to_array();
+        bits(near).fold(0, |near, lane| {
+            let out = distance[lane] - self.radius(cosine[lane]) < NEAR_MM;
+            near | u32::from(out) << lane
+        })
+    }
+
+    /// Pushes a point out of the ball; whether it was so deep that it is to be looked at again.
+    #[inline]
+    fn push(&self, point: usize, skin: &mut Nodes, axis: Vec3A) -> bool {
+        let out = self.drawn.at(point, &skin.place) - self.centre;
         let distance = out.length();
-        let cosine = out.dot(axis) / distance.max(CENTRE_MM);
+        if distance < CENTRE_MM {
+            return false;
+        }
+        let normal = out * distance.recip();
+        let depth = self.radius(normal.dot(axis)) + CLEARANCE_MM - distance;
+        if depth <= 0.0 {
+            return false;
+        }
+        let [node, _] = self.fours[point / FOUR].nodes[point % FOUR];
+        let node = node as usize;
+        skin.place[node] += normal * depth;
+        // Only the speed that brought it there goes: no rebound, and what is pressed lies still.
+        let inwards = skin.velocity[node].dot(normal).min(0.0);
+        skin.velocity[node] -= normal * inwards.max(-depth / STEP_S);
+        depth > DONE_MM
+    }
+
+    /// The ball's radius, cornea included, by the cosine of the angle to the gaze.
+    #[inline]
+    fn radius(&self, cosine: f32) -> f32 {
         let step = (cosine - LEAST_COSINE) * (STEPS as f32 / (1.0 - LEAST_COSINE));
         let step = step.clamp(0.0, STEPS as f32);
-        let i = (step as usize).min(STEPS - 1);
+        let i = (step as i32 as usize).min(STEPS - 1);
         let (a, b) = (self.radius[i], self.radius[i + 1]);
-        a + (b - a) * (step - i as f32) - distance
+        a + (b - a) * (step - i as i32 as f32)
     }
 }
 

@@ -1,11 +1,12 @@
 //! Lips that meet: points of the lower lip are pushed out of the upper one, both by halves.
 //!
 //! Both lips' columns were built over one another and the muscles move them sideways together; what is left of a
-//! sideways shift is made up for along the rows. Within a column the upper lip is a line of segments; a point inside
-//! is pushed square to its segment, so that a lip neither climbs nor sticks.
+//! sideways shift is made up for along the rows, so that both are cut by one plane. There the upper lip is a line of
+//! segments; a point inside is pushed square to its segment, so that a lip neither climbs nor sticks.
 
 use super::drawn::Limit;
-use super::profile::{LANES, Lane, Profile, ROWS};
+use super::four::bits;
+use super::profile::{Cut, LANES, Lane, Profile, ROWS};
 use crate::Head;
 use crate::simulation::STEP_S;
 use crate::tissue::Nodes;
@@ -16,10 +17,16 @@ const PASSES: usize = 2;
 const SLOP_MM: f32 = 0.02;
 /// What is deeper than this in the other lip got there another way, mm.
 const DEEPEST_MM: f32 = 4.0;
-/// Facing columns are not followed farther than this to the side, mm.
-const ASIDE_MM: f32 = 2.0;
-/// What a row rises or falls at most on the way to the point beside it, mm, if the lips are not shifted sideways.
-const AROUND_MM: f32 = 0.4;
+/// Lips are worked out as they are drawn where by their nodes they are nearer than this, mm.
+const NEAR_MM: f32 = 0.5;
+/// And farther than this above the one and below the other they are not, mm.
+const AWAY_MM: f32 = 1.0;
+/// Nothing lies between these heights.
+const NOWHERE: [f32; 2] = [f32::MAX, f32::MIN];
+/// An overlap that was no deeper than this, mm, is not looked at again in the same step.
+const DONE_MM: f32 = 0.05;
+/// The row whose columns are cut in the middle.
+const MIDDLE: usize = ROWS / 2;
 /// Segments flatter than this in depth are passed over, mm.
 const FLAT_MM: f32 = 1e-3;
 
@@ -28,22 +35,31 @@ const FLAT_MM: f32 = 1e-3;
 pub(super) struct Lips {
     /// Upper and lower; none where a vertex of them does not move.
     pair: Option<[Profile; 2]>,
-    /// Blocks of columns that may touch, and those that did.
+    /// Blocks of columns that may touch, and how deep they do, mm.
     near: Vec<bool>,
-    touched: Vec<bool>,
+    deepest: Vec<f32>,
+    /// Per lane: between which heights they may touch.
+    zones: Vec<[f32; 2]>,
 }
 
 impl Lips {
     pub(super) fn new(head: &Head, limit: &Limit<'_>) -> Self {
         let (upper, lower) = (&head.lips.upper, &head.lips.lower);
+        let rest = &head.skin.mesh.positions;
         let pair = (upper.len() == lower.len() && upper.len() > 2)
-            .then(|| Some([Profile::new(upper, limit)?, Profile::new(lower, limit)?]))
+            .then(|| {
+                Some([
+                    Profile::new(upper, limit, rest)?,
+                    Profile::new(lower, limit, rest)?,
+                ])
+            })
             .flatten();
         let blocks = pair.as_ref().map_or(0, |[upper, _]| upper.blocks());
         Self {
             pair,
             near: vec![false; blocks],
-            touched: vec![false; blocks],
+            zones: vec![NOWHERE; blocks * LANES],
+            deepest: vec![0.0; blocks],
         }
     }
 
@@ -51,53 +67,70 @@ impl Lips {
         let Some([upper, lower]) = &mut self.pair else {
             return;
         };
-        if !find_near(&mut self.near, upper, lower, skin) {
+        if !find_near(&mut self.near, &mut self.zones, upper, lower, skin) {
             return;
         }
         for _ in 0..PASSES {
-            draw(&self.near, upper, skin);
-            draw(&self.near, lower, skin);
-            for (block, near) in self.near.iter().enumerate() {
-                self.touched[block] = *near && {
-                    upper.lean(block);
-                    press(upper, lower, block)
+            draw(&self.near, &self.zones, upper, skin);
+            draw(&self.near, &self.zones, lower, skin);
+            for near in 0..self.near.len() {
+                self.deepest[near] = if self.near[near] {
+                    press(upper, lower, near)
+                } else {
+                    0.0
                 };
             }
-            if !self.touched.contains(&true) {
-                return;
-            }
-            for (block, _) in self.touched.iter().enumerate().filter(|(_, t)| **t) {
+            for (block, _) in self.deepest.iter().enumerate().filter(|(_, d)| **d > 0.0) {
                 upper.carry(block, skin);
                 lower.carry(block, skin);
             }
-            // Only what touched, or what is beside it and was drawn along, can touch still.
-            self.near.copy_from_slice(&self.touched);
+            // Only what was deep may be so still.
+            for (near, deepest) in self.near.iter_mut().zip(&self.deepest) {
+                *near = *deepest > DONE_MM;
+            }
+            if !self.near.contains(&true) {
+                return;
+            }
         }
     }
 }
 
 /// Finds the blocks whose lips may touch; whether there is one.
-fn find_near(near: &mut [bool], upper: &Profile, lower: &Profile, skin: &Nodes) -> bool {
-    for (block, near) in near.iter_mut().enumerate() {
-        *near = lower.heights(block, skin).high > upper.heights(block, skin).low;
+fn find_near(
+    near: &mut [bool],
+    zones: &mut [[f32; 2]],
+    upper: &Profile,
+    lower: &Profile,
+    skin: &Nodes,
+) -> bool {
+    near.fill(false);
+    // The corners are one: only what lies between them is pushed.
+    for column in 1..upper.columns - 1 {
+        let [low, high] = upper.bounds(column, skin);
+        let [lowest, highest] = lower.bounds(column, skin);
+        zones[column] = [low.y - AWAY_MM, highest.y + AWAY_MM];
+        if highest.y + NEAR_MM > low.y && highest.z + NEAR_MM > low.z && lowest.z < high.z + NEAR_MM
+        {
+            near[column / LANES] = true;
+        }
     }
     near.contains(&true)
 }
 
 /// Draws the blocks that are near, and the columns beside them.
-fn draw(near: &[bool], lip: &mut Profile, skin: &Nodes) {
+fn draw(near: &[bool], zones: &[[f32; 2]], lip: &mut Profile, skin: &Nodes) {
     for (block, _) in near.iter().enumerate().filter(|(_, near)| **near) {
         for column in block * LANES..(block + 1) * LANES {
-            lip.draw(column, skin);
+            lip.draw(column, zones[column], skin);
         }
     }
     for (block, _) in near.iter().enumerate().filter(|(_, near)| !**near) {
         let beside = |other: Option<&bool>| other.copied().unwrap_or(false);
         if beside(block.checked_sub(1).and_then(|b| near.get(b))) {
-            lip.draw(block * LANES, skin);
+            lip.draw(block * LANES, NOWHERE, skin);
         }
         if beside(near.get(block + 1)) {
-            lip.draw((block + 1) * LANES - 1, skin);
+            lip.draw((block + 1) * LANES - 1, NOWHERE, skin);
         }
     }
     for block in 0..near.len() {
@@ -108,88 +141,123 @@ fn draw(near: &[bool], lip: &mut Profile, skin: &Nodes) {
     }
 }
 
-/// Where a row of the upper lip is, roughly: its least height and its depths against the middle row.
-#[derive(Clone, Copy, Default)]
-struct Reach {
-    low: f32,
-    back: f32,
-    front: f32,
+/// Segments that are looked at together, and sets of them for all rows.
+const TOGETHER: usize = 4;
+const SETS: usize = (ROWS - 1).div_ceil(TOGETHER);
+
+/// The upper lip's segments in a block, cut.
+struct Segments {
+    at: Cut,
+    /// From one end to the other, and what is worked out of it once.
+    ey: [Lane; ROWS - 1],
+    ez: [Lane; ROWS - 1],
+    per_ez: [Lane; ROWS - 1],
+    per: [Lane; ROWS - 1],
+    /// Of all four columns: least heights, least and greatest depths.
+    low: [Lane; SETS],
+    back: [Lane; SETS],
+    front: [Lane; SETS],
 }
 
-/// Adds up what pushes the lower lip's points of a block out of the upper lip's segments; whether anything does.
-fn press(upper: &mut Profile, lower: &mut Profile, block: usize) -> bool {
-    let mut touched = false;
+impl Segments {
+    fn new(at: Cut) -> Self {
+        let none = [Lane::ZERO; ROWS - 1];
+        let far = [Lane::MAX; SETS];
+        let mut all = Self {
+            at,
+            ey: none,
+            ez: none,
+            per_ez: none,
+            per: none,
+            low: far,
+            back: far,
+            front: [Lane::MIN; SETS],
+        };
+        let (y, z) = (&at.y, &at.z);
+        for s in 0..ROWS - 1 {
+            let (ey, ez) = (y[s + 1] - y[s], z[s + 1] - z[s]);
+            let deep = ez.abs().cmpgt(Lane::splat(FLAT_MM));
+            // Nothing lies over what is flat: no number is.
+            all.per_ez[s] = Lane::select(deep, ez.recip(), Lane::NAN);
+            all.per[s] = (ey * ey + ez * ez)
+                .max(Lane::splat(FLAT_MM * FLAT_MM))
+                .recip();
+            (all.ey[s], all.ez[s]) = (ey, ez);
+            let (set, i) = (s / TOGETHER, s % TOGETHER);
+            all.low[set].as_mut()[i] = y[s].min(y[s + 1]).min_element();
+            all.back[set].as_mut()[i] = z[s].min(z[s + 1]).min_element();
+            all.front[set].as_mut()[i] = z[s].max(z[s + 1]).max_element();
+        }
+        all
+    }
+
+    /// Bits of the segments that points may lie over that are so high and between these depths.
+    #[inline]
+    fn near(&self, high: f32, back: f32, front: f32) -> u32 {
+        let (high, back, front) = (Lane::splat(high), Lane::splat(back), Lane::splat(front));
+        (0..SETS).fold(0, |bits, set| {
+            let near = self.low[set].cmplt(high)
+                & self.back[set].cmple(front)
+                & self.front[set].cmpge(back);
+            bits | near.bitmask() << (set * TOGETHER)
+        })
+    }
+}
+
+/// Adds up what pushes the lower lip's points of a block out of the upper lip's segments; how high it
+/// overlaps.
+fn press(upper: &mut Profile, lower: &mut Profile, block: usize) -> f32 {
+    let mut deepest = Lane::ZERO;
     let columns = upper.columns;
     // The corners are one: only what lies between them is pushed; lanes past the end neither.
     let own = Lane::from_array(std::array::from_fn(|lane| {
         let column = block * LANES + lane;
         f32::from(u8::from(column > 0 && column + 1 < columns))
     }));
-    let base = upper.at.z[block][ROWS / 2];
-    let aside = (upper.at.x[block][ROWS / 2] - lower.at.x[block][ROWS / 2]).abs();
-    let around = AROUND_MM + aside.max_element().min(ASIDE_MM);
-    let mut reaches = [Reach::default(); ROWS];
-    for (r, reach) in reaches.iter_mut().enumerate() {
-        let z = upper.at.z[block][r] - base;
-        *reach = Reach {
-            low: upper.at.y[block][r].min_element() - around,
-            back: z.min_element() - around,
-            front: z.max_element() + around,
-        };
+    let x = (upper.at.x[block][MIDDLE] + lower.at.x[block][MIDDLE]) * 0.5;
+    let (mut above, mut below) = (upper.cut(block, x), lower.cut(block, x));
+    // Columns lie behind each other along the arch: each against its own.
+    let base = above.z[MIDDLE];
+    for z in above.z.iter_mut().chain(&mut below.z) {
+        *z -= base;
     }
+    let segments = Segments::new(above);
     for r in 0..ROWS {
-        let high = lower.at.y[block][r].max_element();
-        let z = lower.at.z[block][r] - base;
-        let (back, front) = (z.min_element(), z.max_element());
-        for s in 0..ROWS - 1 {
-            let (a, b) = (reaches[s], reaches[s + 1]);
-            if high > a.low.min(b.low) && back < a.front.max(b.front) && front > a.back.min(b.back)
-            {
-                touched |= segment(upper, lower, block, [r, s], own);
-            }
+        let (y, z) = (below.y[r], below.z[r]);
+        let near = segments.near(y.max_element(), z.min_element(), z.max_element());
+        for s in bits(near) {
+            let deep = segment(&segments, [y, z], upper, lower, block, [r, s], own);
+            deepest = deepest.max(deep);
         }
     }
-    touched
+    deepest.max_element()
 }
 
-/// Adds up what pushes one row of points out of one row of segments; whether anything does.
+/// Adds up what pushes one row of points out of one row of segments; how high they overlap.
+#[inline]
 fn segment(
+    segments: &Segments,
+    [py, pz]: [Lane; 2],
     upper: &mut Profile,
     lower: &mut Profile,
     block: usize,
     [r, s]: [usize; 2],
     own: Lane,
-) -> bool {
-    let (px, py, pz) = (
-        lower.at.x[block][r],
-        lower.at.y[block][r],
-        lower.at.z[block][r],
-    );
-    let (x, y, z) = (&upper.at.x[block], &upper.at.y[block], &upper.at.z[block]);
-    let (rise, way) = (&upper.slope.y[block], &upper.slope.z[block]);
-    // The segment's ends, moved along their rows to where the point is.
-    let aside = |s: usize| (px - x[s]).clamp(Lane::splat(-ASIDE_MM), Lane::splat(ASIDE_MM));
-    let (a, b) = (aside(s), aside(s + 1));
-    let (qy, qz) = (y[s] + rise[s] * a, z[s] + way[s] * a);
-    let (ey, ez) = (
-        y[s + 1] + rise[s + 1] * b - qy,
-        z[s + 1] + way[s + 1] * b - qz,
-    );
-    let deep = ez.abs().cmpgt(Lane::splat(FLAT_MM));
-    let t = (pz - qz) / Lane::select(deep, ez, Lane::ONE);
-    let over = py - qy - ey * t - Lane::splat(SLOP_MM);
-    let inside = deep & t.cmpge(Lane::ZERO) & t.cmplt(Lane::ONE) & over.cmpgt(Lane::ZERO);
+) -> Lane {
+    let (ey, ez, per) = (segments.ey[s], segments.ez[s], segments.per[s]);
+    let t = (pz - segments.at.z[s]) * segments.per_ez[s];
+    let over = py - segments.at.y[s] - ey * t - Lane::splat(SLOP_MM);
+    let inside = t.cmpge(Lane::ZERO) & t.cmplt(Lane::ONE) & over.cmpgt(Lane::ZERO);
     if !inside.any() {
-        return false;
+        return Lane::ZERO;
     }
-    let per = (ey * ey + ez * ez)
-        .max(Lane::splat(FLAT_MM * FLAT_MM))
-        .recip();
+    let over = Lane::select(inside, over, Lane::ZERO);
     let f = over * ez * per;
     let inside = inside & (over * f * ez).cmplt(Lane::splat(DEEPEST_MM * DEEPEST_MM));
     let m = Lane::select(inside, own, Lane::ZERO);
     // Speeds along the segment's normal, where they bring the lips together. No rebound: only the speed that made
     // the overlap goes, so that lips that press come to lie still.
+    let t = Lane::select(inside, t, Lane::ZERO);
     let speed = |v: &[Lane; ROWS]| v[s] + (v[s + 1] - v[s]) * t;
     let vy = lower.speed.y[block][r] - speed(&upper.speed.y[block]);
     let vz = lower.speed.z[block][r] - speed(&upper.speed.z[block]);
@@ -212,5 +280,5 @@ fn segment(
         upper.brake.z[block][s] += share * brake[1];
         upper.weight[block][s] += share;
     }
-    true
+    over * m
 }

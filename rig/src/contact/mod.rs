@@ -3,6 +3,7 @@
 //! | module | holds |
 //! |---|---|
 //! | `drawn` | where vertices are drawn, as sums of nodes |
+//! | `four` | four nodes side by side, to find what may touch |
 //! | `lips` | lips that meet: the profiles of facing columns |
 //! | `profile` | a lip's columns in rows, and which of them are near the other lip |
 //! | `teeth` | lips in front of both rows of teeth and their gums |
@@ -15,6 +16,7 @@
 
 mod drawn;
 mod field;
+mod four;
 mod lids;
 mod lips;
 mod profile;

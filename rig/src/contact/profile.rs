@@ -3,9 +3,10 @@
 //!
 //! Between levels that can touch lie further rows, on the curve through the levels: the drawn surface bows there.
 
-use glam::{Vec3A, Vec4, vec3a, vec4};
+use glam::{Vec3, Vec3A, Vec4, vec3a, vec4};
 
 use super::drawn::{Drawn, Limit};
+use super::four::bits;
 use crate::mesh::LIP_LEVELS;
 use crate::mesh::lip_level::{CONTACT, CREST};
 use crate::tissue::Nodes;
@@ -37,18 +38,27 @@ pub(super) type Lane = Vec4;
 #[derive(Clone, Debug)]
 pub(super) struct Profile {
     pub columns: usize,
-    /// Row of [`Drawn`] `LEVELS * column + level`; empty where the vertex is that of the level before.
+    /// By column, then level: row of `drawn`, node, and from there to where it is drawn at rest.
+    levels: Vec<[Level; LEVELS]>,
     drawn: Drawn,
+    /// 1 where a level is the vertex of the level before; and blocks that have some of these.
+    twin: Vec<[Lane; LEVELS]>,
+    twins: Vec<bool>,
     /// Of the vertices that are drawn.
     pub at: Sheet,
     /// Speeds of the same; x is not used.
     pub speed: Sheet,
-    /// How height and depth change along a row, per mm of x.
-    pub slope: Sheet,
-    /// What contact adds up.
+    /// What contact adds up; x is not used.
     pub push: Sheet,
     pub brake: Sheet,
     pub weight: Vec<[Lane; ROWS]>,
+}
+
+#[derive(Clone, Copy, Debug)]
+struct Level {
+    row: u32,
+    node: u32,
+    offset: Vec3A,
 }
 
 /// Three coordinates of all rows, in blocks of columns.
@@ -70,35 +80,48 @@ impl Sheet {
     }
 }
 
-/// The least and the greatest height of one block's vertices.
-#[derive(Clone, Copy, Debug)]
-pub(super) struct Heights {
-    pub low: f32,
-    pub high: f32,
-}
-
 impl Profile {
     /// None where a vertex does not move.
-    pub(super) fn new(columns: &[[u32; LIP_LEVELS]], limit: &Limit<'_>) -> Option<Self> {
+    pub(super) fn new(
+        columns: &[[u32; LIP_LEVELS]],
+        limit: &Limit<'_>,
+        rest: &[Vec3],
+    ) -> Option<Self> {
+        let blocks = columns.len().div_ceil(LANES);
         let mut drawn = Drawn::default();
-        for column in columns {
-            let levels = &column[CREST..];
-            for (level, &vertex) in levels.iter().enumerate() {
+        let mut twin = vec![[Lane::ZERO; LEVELS]; blocks];
+        let mut levels = Vec::with_capacity(columns.len());
+        for (c, column) in columns.iter().enumerate() {
+            let vertices = &column[CREST..];
+            let mut own = [Level {
+                row: 0,
+                node: 0,
+                offset: Vec3A::ZERO,
+            }; LEVELS];
+            for (level, &vertex) in vertices.iter().enumerate() {
                 let node = limit.numbering().moving(vertex)?;
-                if level > 0 && levels[level - 1] == vertex {
-                    drawn.close();
+                if level > 0 && vertices[level - 1] == vertex {
+                    twin[c / LANES][level].as_mut()[c % LANES] = 1.0;
                 } else {
                     drawn.push(limit, vertex, node);
                 }
+                own[level] = Level {
+                    row: drawn.rows() as u32 - 1,
+                    node,
+                    offset: (limit.at(vertex, rest) - rest[vertex as usize]).into(),
+                };
             }
+            levels.push(own);
         }
-        let blocks = columns.len().div_ceil(LANES);
+        let some = |twin: &[Lane; LEVELS]| twin.iter().any(|t| *t != Lane::ZERO);
         Some(Self {
             columns: columns.len(),
+            levels,
             drawn,
+            twins: twin.iter().map(some).collect(),
+            twin,
             at: Sheet::new(blocks),
             speed: Sheet::new(blocks),
-            slope: Sheet::new(blocks),
             push: Sheet::new(blocks),
             brake: Sheet::new(blocks),
             weight: vec![[Lane::ZERO; ROWS]; blocks],
@@ -109,39 +132,44 @@ impl Profile {
         self.weight.len()
     }
 
-    /// Bounds of the heights of a block's vertices and those a column beside it: what is drawn of it lies inside.
-    pub(super) fn heights(&self, block: usize, skin: &Nodes) -> Heights {
-        let (mut low, mut high) = (f32::MAX, f32::MIN);
-        let first = (block * LANES).saturating_sub(1);
-        let end = ((block + 1) * LANES + 1).min(self.columns);
-        for row in first * LEVELS..end * LEVELS {
-            if let Some(node) = self.drawn.node(row) {
-                let y = skin.place[node].y;
-                (low, high) = (low.min(y), high.max(y));
-            }
+    /// The corner of the box round a column that is the least in all coordinates, and the greatest: as far as its
+    /// points moved along with their nodes.
+    #[inline]
+    pub(super) fn bounds(&self, column: usize, skin: &Nodes) -> [Vec3A; 2] {
+        let (mut low, mut high) = (Vec3A::MAX, Vec3A::MIN);
+        for level in &self.levels[column] {
+            let at = skin.place[level.node as usize] + level.offset;
+            (low, high) = (low.min(at), high.max(at));
         }
-        Heights { low, high }
+        [low, high]
     }
 
-    /// Works out where a column is drawn; lanes past the last repeat it.
-    pub(super) fn draw(&mut self, lane: usize, skin: &Nodes) {
-        let column = lane.min(self.columns - 1);
+    /// Works out where a column is, as it is drawn what lies between two heights, the rest as far as it moved along
+    /// with its nodes; lanes past the last repeat it.
+    pub(super) fn draw(&mut self, lane: usize, [low, high]: [f32; 2], skin: &Nodes) {
+        let levels = &self.levels[lane.min(self.columns - 1)];
         let (block, lane) = (lane / LANES, lane % LANES);
-        let (at, speed) = (&mut self.at, &mut self.speed);
-        let mut place = Vec3A::ZERO;
-        let mut velocity = place;
-        for level in 0..LEVELS {
-            let number = column * LEVELS + level;
-            if let Some(node) = self.drawn.node(number) {
-                place = self.drawn.at(number, &skin.place);
-                velocity = skin.velocity[node];
+        let [x, y, z] = [
+            &mut self.at.x[block],
+            &mut self.at.y[block],
+            &mut self.at.z[block],
+        ];
+        let (vy, vz) = (&mut self.speed.y[block], &mut self.speed.z[block]);
+        let (mut place, mut last) = (Vec3A::ZERO, u32::MAX);
+        for (i, level) in levels.iter().enumerate() {
+            if level.row != last {
+                place = skin.place[level.node as usize] + level.offset;
+                if low < place.y && place.y < high {
+                    place = self.drawn.at(level.row as usize, &skin.place);
+                }
+                last = level.row;
             }
-            let row = row(level);
-            at.x[block][row][lane] = place.x;
-            at.y[block][row][lane] = place.y;
-            at.z[block][row][lane] = place.z;
-            speed.y[block][row][lane] = velocity.y;
-            speed.z[block][row][lane] = velocity.z;
+            let (row, velocity) = (row(i), skin.velocity[level.node as usize]);
+            x[row].as_mut()[lane] = place.x;
+            y[row].as_mut()[lane] = place.y;
+            z[row].as_mut()[lane] = place.z;
+            vy[row].as_mut()[lane] = velocity.y;
+            vz[row].as_mut()[lane] = velocity.z;
         }
     }
 
@@ -164,8 +192,8 @@ impl Profile {
         self.weight[block] = [Lane::ZERO; ROWS];
     }
 
-    /// Works out how a block's rows run from column to column.
-    pub(super) fn lean(&mut self, block: usize) {
+    /// Heights and depths of a block's rows where they pass the given x, straight on from column to column.
+    pub(super) fn cut(&self, block: usize, x: Lane) -> Cut {
         let last = self.blocks() - 1;
         let (before, after) = (block.saturating_sub(1), (block + 1).min(last));
         let step = |sheet: &[[Lane; ROWS]], r: usize| {
@@ -174,70 +202,87 @@ impl Profile {
             let end = if after == block { b.w } else { c.x };
             vec4(b.y, b.z, b.w, end) - vec4(first, b.x, b.y, b.z)
         };
+        let at = &self.at;
+        let mut cut = Cut {
+            y: at.y[block],
+            z: at.z[block],
+        };
+        let most = Lane::splat(ASIDE_MM);
         for r in 0..ROWS {
-            let per = step(&self.at.x, r).max(Lane::splat(NARROW_MM)).recip();
-            self.slope.y[block][r] = step(&self.at.y, r) * per;
-            self.slope.z[block][r] = step(&self.at.z, r) * per;
+            let aside = (x - at.x[block][r]).clamp(-most, most);
+            let per = aside / step(&at.x, r).max(Lane::splat(NARROW_MM));
+            cut.y[r] += step(&at.y, r) * per;
+            cut.z[r] += step(&at.z, r) * per;
         }
+        cut
     }
 
     /// Carries a block's sums to the nodes: each vertex moves by the mean of what it and the rows beside it are
     /// pushed by.
     pub(super) fn carry(&self, block: usize, skin: &mut Nodes) {
         let sheets = [
-            &self.push.y,
-            &self.push.z,
-            &self.brake.y,
-            &self.brake.z,
-            &self.weight,
+            &self.push.y[block],
+            &self.push.z[block],
+            &self.brake.y[block],
+            &self.brake.z[block],
+            &self.weight[block],
         ];
         let mut sums = [[Lane::ZERO; 5]; LEVELS];
-        for (sum, sheet) in sheets.into_iter().enumerate() {
-            let rows = &sheet[block];
-            for (level, sums) in sums.iter_mut().enumerate() {
-                let row = row(level);
-                sums[sum] = rows[row];
+        for (level, sums) in sums.iter_mut().enumerate() {
+            let row = row(level);
+            for (sum, rows) in sums.iter_mut().zip(sheets) {
+                *sum = rows[row];
                 if level > BETWEEN {
-                    sums[sum] += rows[row - 1];
+                    *sum += rows[row - 1];
                 }
                 // What lies behind the contact line is pushed by its inner end: the line itself stays shut.
                 if (BETWEEN..LEVELS - 1).contains(&level) && level != SHARP {
-                    sums[sum] += rows[row + 1];
+                    *sum += rows[row + 1];
                 }
             }
         }
-        for lane in 0..LANES {
-            let column = block * LANES + lane;
-            if column == 0 || column + 1 >= self.columns {
+        if self.twins[block] {
+            // Levels that are the same vertex count together, at the first of them.
+            for level in (1..LEVELS).rev() {
+                let twin = self.twin[block][level];
+                for sum in 0..5 {
+                    let more = sums[level][sum] * twin;
+                    sums[level][sum] -= more;
+                    sums[level - 1][sum] += more;
+                }
+            }
+        }
+        for (level, [y, z, vy, vz, weight]) in sums.into_iter().enumerate() {
+            let mask = weight.cmpgt(Lane::ZERO).bitmask();
+            if mask == 0 {
                 continue;
             }
-            let mut level = 0;
-            while let Some(node) = (level < LEVELS)
-                .then(|| self.drawn.node(column * LEVELS + level))
-                .flatten()
-            {
-                let mut sum = sums[level].map(|s| s[lane]);
-                level += 1;
-                // Levels that are the same vertex count together.
-                while level < LEVELS && self.drawn.node(column * LEVELS + level).is_none() {
-                    for (sum, more) in sum.iter_mut().zip(sums[level]) {
-                        *sum += more[lane];
-                    }
-                    level += 1;
-                }
-                let [y, z, vy, vz, weight] = sum;
-                if weight > 0.0 {
-                    let per = 1.0 / weight.max(1.0);
-                    skin.place[node] += vec3a(0.0, y * per, z * per);
-                    skin.velocity[node] += vec3a(0.0, vy * per, vz * per);
+            let per = weight.max(Lane::ONE).recip();
+            let [y, z] = [y * per, z * per].map(|v| v.to_array());
+            let [vy, vz] = [vy * per, vz * per].map(|v| v.to_array());
+            for lane in bits(mask) {
+                let column = block * LANES + lane;
+                if let Some(levels) = self.levels.get(column) {
+                    let node = levels[level].node as usize;
+                    skin.place[node] += vec3a(0.0, y[lane], z[lane]);
+                    skin.velocity[node] += vec3a(0.0, vy[lane], vz[lane]);
                 }
             }
         }
     }
 }
 
+/// Rows of a block where they pass a plane across the lip.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Cut {
+    pub y: [Lane; ROWS],
+    pub z: [Lane; ROWS],
+}
+
 /// Share of the curve's second difference that it bows by: 1/16 on a cubic, a little more on this surface.
 pub(super) const BOW: f32 = 0.075;
+/// Rows are not followed farther than this to the side, mm.
+const ASIDE_MM: f32 = 2.0;
 /// Columns count as no nearer than this to each other, mm, when it is worked out how a row runs.
 const NARROW_MM: f32 = 0.5;
 

@@ -9,6 +9,7 @@ use glam::{Affine3A, Vec3, Vec3A, vec3};
 
 use super::drawn::{Drawn, Limit};
 use super::field::Field;
+use super::four::{FOUR, Four, List, Places, bits};
 use super::profile::BOW;
 use crate::Head;
 use crate::mesh::LIP_LEVELS;
@@ -19,6 +20,8 @@ use crate::tissue::Nodes;
 /// Passes of pushing, and the share of its way out that a point is pushed in one: points share vertices.
 const PASSES: usize = 3;
 const PUSH_SHARE: f32 = 0.75;
+/// What was no deeper than this, mm, is not looked at again in the same step.
+const DONE_MM: f32 = 0.02;
 /// Lips keep this far from the teeth, mm: the surface between points that are looked at bows less.
 const CLEARANCE_MM: f32 = 0.3;
 /// A lip in front of its own row leaves it ahead, unless that is so much farther than past the edge, mm.
@@ -31,140 +34,149 @@ const NEAR_MM: f32 = 0.6;
 pub(super) struct Teeth {
     upper: Option<Field>,
     lower: Option<Field>,
-    /// The upper lip's points come first.
-    points: Vec<Point>,
-    upper_lip: usize,
-    drawn: Drawn,
+    upper_lip: Points,
+    lower_lip: Points,
+    /// Points that are near each row, then those that the pass before was not done with.
+    near: [List; 2],
 }
 
-/// A place on a lip: the nodes that it is pushed by, twice the same for a vertex, and from their middle to where it is
-/// drawn at rest.
-#[derive(Clone, Copy, Debug)]
-struct Point {
-    nodes: [u32; 2],
-    drawn: Vec3A,
+/// Places on a lip, each with the nodes that it is pushed by: its own one, or those that it lies between.
+#[derive(Clone, Debug, Default)]
+struct Points {
+    fours: Vec<Four>,
+    /// A row a point.
+    drawn: Drawn,
 }
 
 impl Teeth {
     pub(super) fn new(head: &Head, limit: &Limit<'_>) -> Self {
         let field = |names: [&str; 2], up: f32| {
             let parts = names.into_iter().filter_map(|name| head.part(name));
-            Field::new(parts.map(|p| &p.mesh), up)
-        };
-        let mut teeth = Self {
-            upper: field(["teeth_upper", "gums_upper"], 1.0),
-            lower: field(["teeth_lower", "gums_lower"], -1.0),
-            points: Vec::new(),
-            upper_lip: 0,
-            drawn: Drawn::default(),
+            Field::new(parts.map(|p| &p.mesh), up, NEAR_MM)
         };
         // Of the lower lip the red too, which reaches under the upper teeth; of the upper one what faces them.
-        teeth.take(&head.lips.upper, CONTACT - 2, limit, head);
-        teeth.upper_lip = teeth.points.len();
-        teeth.take(&head.lips.lower, CREST + 1, limit, head);
-        teeth
+        let upper_lip = Points::new(&head.lips.upper, CONTACT - 2, limit, head);
+        let lower_lip = Points::new(&head.lips.lower, CREST + 1, limit, head);
+        let most = upper_lip.drawn.rows().max(lower_lip.drawn.rows());
+        Self {
+            upper: field(["teeth_upper", "gums_upper"], 1.0),
+            lower: field(["teeth_lower", "gums_lower"], -1.0),
+            upper_lip,
+            lower_lip,
+            near: std::array::from_fn(|_| List::with_room(most)),
+        }
     }
 
-    fn take(&mut self, columns: &[[u32; LIP_LEVELS]], from: usize, limit: &Limit<'_>, head: &Head) {
-        for column in columns.iter().skip(1).take(columns.len().saturating_sub(2)) {
+    pub(super) fn resolve(&mut self, skin: &mut Nodes, mandible: &Affine3A) {
+        let upper = self.upper.as_ref().map(|field| Row {
+            field,
+            frames: None,
+            rather_ahead_mm: RATHER_AHEAD_MM,
+        });
+        let lower = self.lower.as_ref().map(|field| Row {
+            field,
+            frames: Some([mandible.inverse(), *mandible]),
+            rather_ahead_mm: RATHER_AHEAD_MM,
+        });
+        self.upper_lip.hold([upper, None], &mut self.near, skin);
+        let upper = upper.map(|row| Row {
+            rather_ahead_mm: 0.0,
+            ..row
+        });
+        self.lower_lip.hold([upper, lower], &mut self.near, skin);
+    }
+}
+
+impl Points {
+    fn new(columns: &[[u32; LIP_LEVELS]], from: usize, limit: &Limit<'_>, head: &Head) -> Self {
+        let (mut drawn, mut points) = (Drawn::default(), Vec::new());
+        let mut push = |mix: &[(u32, f32)], ends: [u32; 2]| {
+            let numbering = limit.numbering();
+            let (Some(a), Some(b)) = (numbering.moving(ends[0]), numbering.moving(ends[1])) else {
+                return;
+            };
+            if drawn.push_mix(limit, mix) {
+                let rest = &head.skin.mesh.positions;
+                let shares = mix.iter().map(|(v, share)| limit.at(*v, rest) * *share);
+                let middle = (rest[ends[0] as usize] + rest[ends[1] as usize]) * 0.5;
+                points.push(([a, b], shares.sum::<Vec3>() - middle));
+            }
+        };
+        let inner = columns.get(1..columns.len().saturating_sub(1));
+        let inner = inner.unwrap_or_default();
+        for column in inner {
             for level in from..LIP_LEVELS {
                 if column[level] != column[level - 1] {
-                    self.push(&[(column[level], 1.0)], [column[level]; 2], limit, head);
+                    push(&[(column[level], 1.0)], [column[level]; 2]);
                 }
-                // The inner side's levels lie far apart, and the surface bows between them.
-                if (INNER..LIP_LEVELS - 1).contains(&level) {
-                    let at = |i: usize| column[i.min(LIP_LEVELS - 1)];
-                    let mix = [
-                        (at(level - 1), -BOW),
-                        (at(level), 0.5 + BOW),
-                        (at(level + 1), 0.5 + BOW),
-                        (at(level + 2), -BOW),
-                    ];
-                    self.push(&mix, [at(level), at(level + 1)], limit, head);
+            }
+        }
+        // The inner side's levels lie far apart, and the surface bows between them.
+        for column in inner {
+            for level in INNER..LIP_LEVELS - 1 {
+                let at = |i: usize| column[i.min(LIP_LEVELS - 1)];
+                let mix = [
+                    (at(level - 1), -BOW),
+                    (at(level), 0.5 + BOW),
+                    (at(level + 1), 0.5 + BOW),
+                    (at(level + 2), -BOW),
+                ];
+                push(&mix, [at(level), at(level + 1)]);
+            }
+        }
+        Self {
+            fours: Four::all(&points),
+            drawn,
+        }
+    }
+
+    /// Keeps the points out of two rows of teeth, one after the other.
+    fn hold(&self, rows: [Option<Row<'_>>; 2], near: &mut [List; 2], skin: &mut Nodes) {
+        near.iter_mut().for_each(List::clear);
+        for (i, four) in self.fours.iter().enumerate() {
+            let at = four.at(&skin.place);
+            for (row, near) in rows.iter().zip(&mut *near) {
+                if let Some(row) = row {
+                    for lane in bits(row.near(&at) & four.some) {
+                        near.push(i * FOUR + lane);
+                    }
+                }
+            }
+        }
+        for (row, near) in rows.iter().zip(near) {
+            if let Some(row) = row {
+                // What is free is not pushed in by what is pushed out beside it.
+                for _ in 0..PASSES {
+                    near.keep(|point| self.push(point, row, skin));
                 }
             }
         }
     }
 
-    fn push(&mut self, mix: &[(u32, f32)], ends: [u32; 2], limit: &Limit<'_>, head: &Head) {
-        let numbering = limit.numbering();
-        let (Some(a), Some(b)) = (numbering.moving(ends[0]), numbering.moving(ends[1])) else {
-            return;
+    /// Pushes a point out of a row of teeth; whether it was so deep that it is to be looked at again.
+    #[inline]
+    fn push(&self, point: usize, row: &Row<'_>, skin: &mut Nodes) -> bool {
+        let at = row.to(self.drawn.at(point, &skin.place));
+        let Some(push) = row.field.push(at, CLEARANCE_MM, row.rather_ahead_mm) else {
+            return false;
         };
-        if self.drawn.push_mix(limit, mix) {
-            let rest = &head.skin.mesh.positions;
-            let at: Vec3 = mix
-                .iter()
-                .map(|(v, share)| limit.at(*v, rest) * *share)
-                .sum();
-            let middle = (rest[ends[0] as usize] + rest[ends[1] as usize]) * 0.5;
-            self.points.push(Point {
-                nodes: [a, b],
-                drawn: (at - middle).into(),
-            });
+        let push = row.from(push) * PUSH_SHARE;
+        let depth = push.length();
+        let normal = push * depth.max(f32::MIN_POSITIVE).recip();
+        let [a, b] = self.fours[point / FOUR].nodes[point % FOUR];
+        for node in &[a, b][..if a == b { 1 } else { 2 }] {
+            let node = *node as usize;
+            skin.place[node] += push;
+            // Only the speed that brought it there goes: no rebound, and what is pressed lies still.
+            let inwards = skin.velocity[node].dot(normal).min(0.0);
+            skin.velocity[node] -= normal * inwards.max(-depth / STEP_S);
         }
-    }
-
-    pub(super) fn resolve(&self, skin: &mut Nodes, mandible: &Affine3A) {
-        let (upper_lip, lower_lip) = self.points.split_at(self.upper_lip);
-        let first = self.upper_lip;
-        if let Some(upper) = &self.upper {
-            let row = Row {
-                field: upper,
-                frames: None,
-                rather_ahead_mm: RATHER_AHEAD_MM,
-            };
-            self.hold(upper_lip, 0, &row, skin);
-            let row = Row {
-                rather_ahead_mm: 0.0,
-                ..row
-            };
-            self.hold(lower_lip, first, &row, skin);
-        }
-        if let Some(lower) = &self.lower {
-            let row = Row {
-                field: lower,
-                frames: Some([mandible.inverse(), *mandible]),
-                rather_ahead_mm: RATHER_AHEAD_MM,
-            };
-            self.hold(lower_lip, first, &row, skin);
-        }
-    }
-
-    /// Keeps points, of which `first` come before, out of one row.
-    fn hold(&self, points: &[Point], first: usize, row: &Row<'_>, skin: &mut Nodes) {
-        for _ in 0..PASSES {
-            let mut touched = false;
-            for (i, point) in points.iter().enumerate() {
-                let [a, b] = point.nodes.map(|node| node as usize);
-                let middle = (skin.place[a] + skin.place[b]) * 0.5;
-                let near = row.to(middle + point.drawn);
-                if !row.field.may_hold(near, NEAR_MM) {
-                    continue;
-                }
-                let at = row.to(self.drawn.at(first + i, &skin.place));
-                let Some(push) = row.field.push(at, CLEARANCE_MM, row.rather_ahead_mm) else {
-                    continue;
-                };
-                touched = true;
-                let push = row.from(push) * PUSH_SHARE;
-                let depth = push.length();
-                let normal = push.normalize_or_zero();
-                for node in &[a, b][..if a == b { 1 } else { 2 }] {
-                    skin.place[*node] += push;
-                    // Only the speed that brought it there goes: no rebound, and what is pressed lies still.
-                    let inwards = skin.velocity[*node].dot(normal).min(0.0);
-                    skin.velocity[*node] -= normal * inwards.max(-depth / STEP_S);
-                }
-            }
-            if !touched {
-                break;
-            }
-        }
+        depth > DONE_MM
     }
 }
 
 /// A row of teeth as it is now.
+#[derive(Clone, Copy)]
 struct Row<'a> {
     field: &'a Field,
     /// From the head to where the row was at rest, and back; none of the upper row.
@@ -180,6 +192,15 @@ impl Row<'_> {
     fn from(&self, v: Vec3A) -> Vec3A {
         self.frames
             .map_or(v, |[_, from]| from.transform_vector3a(v))
+    }
+
+    /// Bits of the points that the row may hold.
+    #[inline]
+    fn near(&self, at: &Places) -> u32 {
+        match &self.frames {
+            Some([to, _]) => self.field.near(&at.moved(to)),
+            None => self.field.near(at),
+        }
     }
 }
 
