@@ -16,6 +16,9 @@ const TALL_MM: f32 = 22.0;
 const GAP_MM: f32 = 1.5;
 /// Farther behind the front than this, mm, a point is behind the teeth and none of a lip's.
 const BEHIND_MM: f32 = 7.0;
+/// Added to a number that is not negative, this rounds it, into the bits.
+const WHOLE: f32 = 8_388_608.0;
+const WHOLE_BITS: u32 = 0x007f_ffff;
 /// Where nothing is.
 const NOTHING: f32 = -1e3;
 
@@ -145,16 +148,16 @@ impl Field {
 
     /// Bounds the front round each sample, edges included: a point that is so far off may be held there.
     fn look(&mut self, near_mm: f32) {
-        // A sample stands for what lies between it and the next ones.
-        let cells = (near_mm / CELL_MM).ceil() as usize;
+        // A sample stands for what it is the nearest of, and what lies between samples is bounded by both.
+        let cells = (near_mm / CELL_MM).ceil() as usize + 1;
         self.below = cells as f32 * CELL_MM;
         self.high = self.tall + cells;
         self.reach = (0..self.high * self.across)
             .map(|i| {
                 let (x, y) = (i % self.across, (i / self.across) as i32 - cells as i32);
-                let columns = x.saturating_sub(cells)..(x + cells + 2).min(self.across);
+                let columns = x.saturating_sub(cells)..(x + cells + 1).min(self.across);
                 let first = (y - cells as i32).clamp(0, self.tall as i32 - 1) as usize;
-                let last = (y + cells as i32 + 1).clamp(0, self.tall as i32 - 1) as usize;
+                let last = (y + cells as i32).clamp(0, self.tall as i32 - 1) as usize;
                 let front = (first..=last)
                     .flat_map(|y| &self.front[y * self.across..][columns.clone()])
                     .fold(NOTHING, |most: f32, z| most.max(*z));
@@ -203,11 +206,16 @@ impl Field {
         if mask == 0 {
             return 0;
         }
-        let (tall, across, z) = (tall.to_array(), across.to_array(), at.z.to_array());
-        bits(mask).fold(0, |near, lane| {
-            let sample = tall[lane] as i32 as usize * self.across + across[lane] as i32 as usize;
-            near | u32::from(z[lane] < self.reach[sample]) << lane
-        })
+        // Whole samples, in the lowest bits of numbers that are so great.
+        let whole = |p: Vec4, count: usize| {
+            let p = p.clamp(Vec4::ZERO, Vec4::splat((count - 1) as f32));
+            (p + Vec4::splat(WHOLE))
+                .to_array()
+                .map(|p| (p.to_bits() & WHOLE_BITS) as usize)
+        };
+        let (tall, across) = (whole(tall, self.high), whole(across, self.across));
+        let reach = std::array::from_fn(|i| self.reach[tall[i] * self.across + across[i]]);
+        mask & at.z.cmplt(Vec4::from_array(reach)).bitmask()
     }
 
     /// The way out for a point in the row or nearer than `clearance_mm`: past the edge where that is the shorter one by

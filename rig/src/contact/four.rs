@@ -8,12 +8,9 @@ pub(super) const FOUR: usize = 4;
 /// Four points by the nodes that they hang on.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Four {
-    /// Twice the same of a point that hangs on one node.
-    pub nodes: [[u32; 2]; FOUR],
-    /// From the nodes' middle to the point at rest.
+    nodes: [u32; FOUR],
+    /// From the nodes to the points at rest.
     offset: Places,
-    /// Whether each of the four hangs on one node.
-    single: bool,
     /// Bits of the points that there are: the last four may be fewer.
     pub some: u32,
 }
@@ -28,15 +25,12 @@ pub(super) struct Places {
 
 impl Four {
     /// Points, four at a time.
-    pub(super) fn all(points: &[([u32; 2], Vec3)]) -> Vec<Self> {
-        let four = |points: &[([u32; 2], Vec3)]| {
+    pub(super) fn all(points: &[(u32, Vec3)]) -> Vec<Self> {
+        let four = |points: &[(u32, Vec3)]| {
             let at = |i: usize| points[i.min(points.len() - 1)];
-            let offsets: [Vec3; FOUR] = std::array::from_fn(|i| at(i).1);
-            let nodes: [[u32; 2]; FOUR] = std::array::from_fn(|i| at(i).0);
             Self {
-                nodes,
-                offset: Places::new(offsets.map(Vec3A::from)),
-                single: nodes.iter().all(|[a, b]| a == b),
+                nodes: std::array::from_fn(|i| at(i).0),
+                offset: Places::new(std::array::from_fn(|i| at(i).1.into())),
                 some: (1 << points.len()) - 1,
             }
         };
@@ -46,28 +40,18 @@ impl Four {
     /// Where the points are as far as they moved along with their nodes.
     #[inline]
     pub(super) fn at(&self, places: &[Vec3A]) -> Places {
-        let first = Places::new(self.nodes.map(|[a, _]| places[a as usize]));
-        let middle = if self.single {
-            first
-        } else {
-            let other = Places::new(self.nodes.map(|[_, b]| places[b as usize]));
-            Places {
-                x: (first.x + other.x) * 0.5,
-                y: (first.y + other.y) * 0.5,
-                z: (first.z + other.z) * 0.5,
-            }
-        };
+        let at = Places::new(self.nodes.map(|node| places[node as usize]));
         Places {
-            x: middle.x + self.offset.x,
-            y: middle.y + self.offset.y,
-            z: middle.z + self.offset.z,
+            x: at.x + self.offset.x,
+            y: at.y + self.offset.y,
+            z: at.z + self.offset.z,
         }
     }
 }
 
 impl Places {
     #[inline]
-    fn new([a, b, c, d]: [Vec3A; FOUR]) -> Self {
+    pub(super) fn new([a, b, c, d]: [Vec3A; FOUR]) -> Self {
         Self {
             x: Vec4::new(a.x, b.x, c.x, d.x),
             y: Vec4::new(a.y, b.y, c.y, d.y),
@@ -129,14 +113,19 @@ impl List {
         }
     }
 
-    /// Keeps those of which it is true, in order.
+    pub(super) fn points(&self) -> &[u32] {
+        &self.room[..self.count]
+    }
+
+    /// Asks of four at a time which to keep; the bits that it is given say which of them there are.
     #[inline]
-    pub(super) fn keep(&mut self, mut of: impl FnMut(usize) -> bool) {
+    pub(super) fn keep(&mut self, mut of: impl FnMut([usize; FOUR], u32) -> u32) {
         let mut kept = 0;
-        for i in 0..self.count {
-            let point = self.room[i];
-            if of(point as usize) {
-                self.room[kept] = point;
+        for first in (0..self.count).step_by(FOUR) {
+            let count = (self.count - first).min(FOUR);
+            let points = std::array::from_fn(|i| self.room[first + i.min(count - 1)]);
+            for i in bits(of(points.map(|point| point as usize), (1 << count) - 1)) {
+                self.room[kept] = points[i];
                 kept += 1;
             }
         }

@@ -39,10 +39,11 @@ struct Ball {
     reach: [f32; 2],
     /// Points by their nodes, from the centre.
     fours: Vec<Four>,
-    /// A row a point.
+    /// A row and a node a point.
     drawn: Drawn,
-    /// Points that the pass before was not done with.
-    touched: List,
+    nodes: Vec<u32>,
+    /// Points that are near, then those that the pass before was not done with.
+    near: List,
 }
 
 impl Lids {
@@ -54,7 +55,7 @@ impl Lids {
             for lid in head.lids.iter().filter(|lid| lid.left == left) {
                 if let Some(node) = limit.numbering().moving(lid.vertex) {
                     let at = limit.at(lid.vertex, rest) - rest[lid.vertex as usize];
-                    points.push(([node; 2], at - eye.centre));
+                    points.push((node, at - eye.centre));
                     drawn.push(limit, lid.vertex, node);
                 }
             }
@@ -65,7 +66,8 @@ impl Lids {
                 reach: [most, radius[0]].map(|r| (r + NEAR_MM) * (r + NEAR_MM)),
                 radius,
                 fours: Four::all(&points),
-                touched: List::with_room(points.len()),
+                near: List::with_room(points.len()),
+                nodes: points.iter().map(|(node, _)| *node).collect(),
                 drawn,
             }
         };
@@ -86,22 +88,19 @@ impl Lids {
 
 impl Ball {
     fn hold(&mut self, skin: &mut Nodes, axis: Vec3A) {
-        let mut touched = std::mem::take(&mut self.touched);
-        touched.clear();
+        self.near.clear();
         for (i, four) in self.fours.iter().enumerate() {
             let at = four.at(&skin.place);
             for lane in bits(self.near(&at, axis) & four.some) {
-                let point = i * FOUR + lane;
-                if self.push(point, skin, axis) {
-                    touched.push(point);
-                }
+                self.near.push(i * FOUR + lane);
             }
         }
         // All are pushed outwards: what was free stays free.
-        for _ in 1..PASSES {
-            touched.keep(|point| self.push(point, skin, axis));
+        let mut near = std::mem::take(&mut self.near);
+        for _ in 0..PASSES {
+            near.keep(|points, some| self.push(points, some, skin, axis));
         }
-        self.touched = touched;
+        self.near = near;
     }
 
     /// Bits of the points that may be near the ball, from its centre.
@@ -119,31 +118,36 @@ impl Ball {
         let distance = square.to_array().map(f32::sqrt);
         let cosine = (along / Vec4::from_array(distance).max(Vec4::splat(CENTRE_MM))).to_array();
         bits(near).fold(0, |near, lane| {
-            let out = distance[lane] - self.radius(cosine[lane]) < NEAR_MM;
-            near | u32::from(out) << lane
+            let close = distance[lane] - self.radius(cosine[lane]) < NEAR_MM;
+            near | u32::from(close) << lane
         })
     }
 
-    /// Pushes a point out of the ball; whether it was so deep that it is to be looked at again.
+    /// Pushes points out of the ball, each for itself; bits of those that were so deep that they are to be looked
+    /// at again.
     #[inline]
-    fn push(&self, point: usize, skin: &mut Nodes, axis: Vec3A) -> bool {
-        let out = self.drawn.at(point, &skin.place) - self.centre;
-        let distance = out.length();
-        if distance < CENTRE_MM {
-            return false;
+    fn push(&self, points: [usize; FOUR], some: u32, skin: &mut Nodes, axis: Vec3A) -> u32 {
+        let drawn = points.map(|point| self.drawn.at(point, &skin.place) - self.centre);
+        let out = Places::new(drawn);
+        let square = out.x * out.x + out.y * out.y + out.z * out.z;
+        let along = out.x * axis.x + out.y * axis.y + out.z * axis.z;
+        let distance = Vec4::from_array(square.to_array().map(f32::sqrt));
+        let per = distance.max(Vec4::splat(CENTRE_MM)).recip();
+        let cosine = (along * per).to_array();
+        let radius = Vec4::from_array(cosine.map(|cosine| self.radius(cosine)));
+        let depth = radius + Vec4::splat(CLEARANCE_MM) - distance;
+        let inside = depth.cmpgt(Vec4::ZERO) & distance.cmpgt(Vec4::splat(CENTRE_MM));
+        let (per, depths) = (per.to_array(), depth.to_array());
+        let inside = inside.bitmask() & some;
+        for lane in bits(inside) {
+            let (node, depth) = (self.nodes[points[lane]] as usize, depths[lane]);
+            let normal = drawn[lane] * per[lane];
+            skin.place[node] += normal * depth;
+            // Only the speed that brought it there goes: no rebound, and what is pressed lies still.
+            let inwards = skin.velocity[node].dot(normal).min(0.0);
+            skin.velocity[node] -= normal * inwards.max(depth * (-1.0 / STEP_S));
         }
-        let normal = out * distance.recip();
-        let depth = self.radius(normal.dot(axis)) + CLEARANCE_MM - distance;
-        if depth <= 0.0 {
-            return false;
-        }
-        let [node, _] = self.fours[point / FOUR].nodes[point % FOUR];
-        let node = node as usize;
-        skin.place[node] += normal * depth;
-        // Only the speed that brought it there goes: no rebound, and what is pressed lies still.
-        let inwards = skin.velocity[node].dot(normal).min(0.0);
-        skin.velocity[node] -= normal * inwards.max(-depth / STEP_S);
-        depth > DONE_MM
+        inside & depth.cmpgt(Vec4::splat(DONE_MM)).bitmask()
     }
 
     /// The ball's radius, cornea included, by the cosine of the angle to the gaze.

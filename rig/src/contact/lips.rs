@@ -11,8 +11,9 @@ use crate::Head;
 use crate::simulation::STEP_S;
 use crate::tissue::Nodes;
 
-/// Passes of pushing: what is drawn follows a vertex by half where its neighbours stay.
-const PASSES: usize = 2;
+/// A point is pushed by so much of its way out, by more than all of it: what is drawn follows less than vertices do,
+/// and one pass has to be enough.
+const PUSH: f32 = 1.45;
 /// So little an overlap counts as touching, mm: lips that meet at rest do not press.
 const SLOP_MM: f32 = 0.02;
 /// What is deeper than this in the other lip got there another way, mm.
@@ -23,8 +24,6 @@ const NEAR_MM: f32 = 0.5;
 const AWAY_MM: f32 = 1.0;
 /// Nothing lies between these heights.
 const NOWHERE: [f32; 2] = [f32::MAX, f32::MIN];
-/// An overlap that was no deeper than this, mm, is not looked at again in the same step.
-const DONE_MM: f32 = 0.05;
 /// The row whose columns are cut in the middle.
 const MIDDLE: usize = ROWS / 2;
 /// Segments flatter than this in depth are passed over, mm.
@@ -35,9 +34,8 @@ const FLAT_MM: f32 = 1e-3;
 pub(super) struct Lips {
     /// Upper and lower; none where a vertex of them does not move.
     pair: Option<[Profile; 2]>,
-    /// Blocks of columns that may touch, and how deep they do, mm.
+    /// Blocks of columns that may touch, then those that do.
     near: Vec<bool>,
-    deepest: Vec<f32>,
     /// Per lane: between which heights they may touch.
     zones: Vec<[f32; 2]>,
 }
@@ -59,7 +57,6 @@ impl Lips {
             pair,
             near: vec![false; blocks],
             zones: vec![NOWHERE; blocks * LANES],
-            deepest: vec![0.0; blocks],
         }
     }
 
@@ -70,27 +67,14 @@ impl Lips {
         if !find_near(&mut self.near, &mut self.zones, upper, lower, skin) {
             return;
         }
-        for _ in 0..PASSES {
-            draw(&self.near, &self.zones, upper, skin);
-            draw(&self.near, &self.zones, lower, skin);
-            for near in 0..self.near.len() {
-                self.deepest[near] = if self.near[near] {
-                    press(upper, lower, near)
-                } else {
-                    0.0
-                };
-            }
-            for (block, _) in self.deepest.iter().enumerate().filter(|(_, d)| **d > 0.0) {
-                upper.carry(block, skin);
-                lower.carry(block, skin);
-            }
-            // Only what was deep may be so still.
-            for (near, deepest) in self.near.iter_mut().zip(&self.deepest) {
-                *near = *deepest > DONE_MM;
-            }
-            if !self.near.contains(&true) {
-                return;
-            }
+        draw(&self.near, &self.zones, upper, skin);
+        draw(&self.near, &self.zones, lower, skin);
+        for (block, near) in self.near.iter_mut().enumerate() {
+            *near = *near && press(upper, lower, block);
+        }
+        for (block, _) in self.near.iter().enumerate().filter(|(_, t)| **t) {
+            upper.carry(block, skin);
+            lower.carry(block, skin);
         }
     }
 }
@@ -204,10 +188,10 @@ impl Segments {
     }
 }
 
-/// Adds up what pushes the lower lip's points of a block out of the upper lip's segments; how high it
-/// overlaps.
-fn press(upper: &mut Profile, lower: &mut Profile, block: usize) -> f32 {
-    let mut deepest = Lane::ZERO;
+/// Adds up what pushes the lower lip's points of a block out of the upper lip's segments; whether anything
+/// does.
+fn press(upper: &mut Profile, lower: &mut Profile, block: usize) -> bool {
+    let mut touched = false;
     let columns = upper.columns;
     // The corners are one: only what lies between them is pushed; lanes past the end neither.
     let own = Lane::from_array(std::array::from_fn(|lane| {
@@ -226,14 +210,13 @@ fn press(upper: &mut Profile, lower: &mut Profile, block: usize) -> f32 {
         let (y, z) = (below.y[r], below.z[r]);
         let near = segments.near(y.max_element(), z.min_element(), z.max_element());
         for s in bits(near) {
-            let deep = segment(&segments, [y, z], upper, lower, block, [r, s], own);
-            deepest = deepest.max(deep);
+            touched |= segment(&segments, [y, z], upper, lower, block, [r, s], own);
         }
     }
-    deepest.max_element()
+    touched
 }
 
-/// Adds up what pushes one row of points out of one row of segments; how high they overlap.
+/// Adds up what pushes one row of points out of one row of segments; whether anything does.
 #[inline]
 fn segment(
     segments: &Segments,
@@ -243,13 +226,13 @@ fn segment(
     block: usize,
     [r, s]: [usize; 2],
     own: Lane,
-) -> Lane {
+) -> bool {
     let (ey, ez, per) = (segments.ey[s], segments.ez[s], segments.per[s]);
     let t = (pz - segments.at.z[s]) * segments.per_ez[s];
     let over = py - segments.at.y[s] - ey * t - Lane::splat(SLOP_MM);
     let inside = t.cmpge(Lane::ZERO) & t.cmplt(Lane::ONE) & over.cmpgt(Lane::ZERO);
     if !inside.any() {
-        return Lane::ZERO;
+        return false;
     }
     let over = Lane::select(inside, over, Lane::ZERO);
     let f = over * ez * per;
@@ -265,9 +248,9 @@ fn segment(
     let limit = f.abs() * (1.0 / STEP_S);
     let k = Lane::select((k * ez).cmpgt(Lane::ZERO), k, Lane::ZERO).clamp(-limit, limit);
     let share = t * m;
-    let half = 0.5 * m;
+    let half = (0.5 * PUSH) * m;
     let push = [half * f * ez, -half * f * ey];
-    let brake = [half * k * ez, -half * k * ey];
+    let brake = [0.5 * m * k * ez, -0.5 * m * k * ey];
     lower.push.y[block][r] -= push[0];
     lower.push.z[block][r] -= push[1];
     lower.brake.y[block][r] -= brake[0];
@@ -280,5 +263,5 @@ fn segment(
         upper.brake.z[block][s] += share * brake[1];
         upper.weight[block][s] += share;
     }
-    over * m
+    true
 }

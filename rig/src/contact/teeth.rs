@@ -40,12 +40,17 @@ pub(super) struct Teeth {
     near: [List; 2],
 }
 
-/// Places on a lip, each with the nodes that it is pushed by: its own one, or those that it lies between.
+/// Places on a lip: those of vertices, then those between two of them.
 #[derive(Clone, Debug, Default)]
 struct Points {
+    /// Of vertices.
     fours: Vec<Four>,
+    /// Per vertex: the points between it and the levels before and after it.
+    beside: Vec<[Option<u32>; 2]>,
     /// A row a point.
     drawn: Drawn,
+    /// The nodes that a point is pushed by: twice its own one, or those that it lies between.
+    nodes: Vec<[u32; 2]>,
 }
 
 impl Teeth {
@@ -89,31 +94,34 @@ impl Teeth {
 
 impl Points {
     fn new(columns: &[[u32; LIP_LEVELS]], from: usize, limit: &Limit<'_>, head: &Head) -> Self {
-        let (mut drawn, mut points) = (Drawn::default(), Vec::new());
-        let mut push = |mix: &[(u32, f32)], ends: [u32; 2]| {
-            let numbering = limit.numbering();
-            let (Some(a), Some(b)) = (numbering.moving(ends[0]), numbering.moving(ends[1])) else {
-                return;
-            };
-            if drawn.push_mix(limit, mix) {
-                let rest = &head.skin.mesh.positions;
-                let shares = mix.iter().map(|(v, share)| limit.at(*v, rest) * *share);
-                let middle = (rest[ends[0] as usize] + rest[ends[1] as usize]) * 0.5;
-                points.push(([a, b], shares.sum::<Vec3>() - middle));
-            }
-        };
+        let (rest, numbering) = (&head.skin.mesh.positions, limit.numbering());
+        let (mut points, mut all) = (Vec::new(), Self::default());
+        // Where a level's vertex is among the points.
+        let mut found = Vec::new();
         let inner = columns.get(1..columns.len().saturating_sub(1));
         let inner = inner.unwrap_or_default();
         for column in inner {
+            let mut own = [None; LIP_LEVELS];
             for level in from..LIP_LEVELS {
-                if column[level] != column[level - 1] {
-                    push(&[(column[level], 1.0)], [column[level]; 2]);
+                let vertex = column[level];
+                if vertex == column[level - 1] {
+                    own[level] = own[level - 1];
+                } else if let Some(node) = numbering.moving(vertex) {
+                    own[level] = Some(points.len());
+                    points.push((node, limit.at(vertex, rest) - rest[vertex as usize]));
+                    all.nodes.push([node; 2]);
+                    all.drawn.push(limit, vertex, node);
                 }
             }
+            found.push(own);
         }
+        all.beside = vec![[None; 2]; points.len()];
         // The inner side's levels lie far apart, and the surface bows between them.
-        for column in inner {
+        for (column, own) in inner.iter().zip(found) {
             for level in INNER..LIP_LEVELS - 1 {
+                let (Some(a), Some(b)) = (own[level], own[level + 1]) else {
+                    continue;
+                };
                 let at = |i: usize| column[i.min(LIP_LEVELS - 1)];
                 let mix = [
                     (at(level - 1), -BOW),
@@ -121,13 +129,15 @@ impl Points {
                     (at(level + 1), 0.5 + BOW),
                     (at(level + 2), -BOW),
                 ];
-                push(&mix, [at(level), at(level + 1)]);
+                if a != b && all.drawn.push_mix(limit, &mix) {
+                    let between = Some(all.nodes.len() as u32);
+                    all.nodes.push([points[a].0, points[b].0]);
+                    (all.beside[a][1], all.beside[b][0]) = (between, between);
+                }
             }
         }
-        Self {
-            fours: Four::all(&points),
-            drawn,
-        }
+        all.fours = Four::all(&points);
+        all
     }
 
     /// Keeps the points out of two rows of teeth, one after the other.
@@ -145,33 +155,55 @@ impl Points {
         }
         for (row, near) in rows.iter().zip(near) {
             if let Some(row) = row {
+                self.add_between(near);
                 // What is free is not pushed in by what is pushed out beside it.
                 for _ in 0..PASSES {
-                    near.keep(|point| self.push(point, row, skin));
+                    near.keep(|points, some| self.push(points, some, row, skin));
                 }
             }
         }
     }
 
-    /// Pushes a point out of a row of teeth; whether it was so deep that it is to be looked at again.
-    #[inline]
-    fn push(&self, point: usize, row: &Row<'_>, skin: &mut Nodes) -> bool {
-        let at = row.to(self.drawn.at(point, &skin.place));
-        let Some(push) = row.field.push(at, CLEARANCE_MM, row.rather_ahead_mm) else {
-            return false;
-        };
-        let push = row.from(push) * PUSH_SHARE;
-        let depth = push.length();
-        let normal = push * depth.max(f32::MIN_POSITIVE).recip();
-        let [a, b] = self.fours[point / FOUR].nodes[point % FOUR];
-        for node in &[a, b][..if a == b { 1 } else { 2 }] {
-            let node = *node as usize;
-            skin.place[node] += push;
-            // Only the speed that brought it there goes: no rebound, and what is pressed lies still.
-            let inwards = skin.velocity[node].dot(normal).min(0.0);
-            skin.velocity[node] -= normal * inwards.max(-depth / STEP_S);
+    /// Adds what lies beside a vertex that is near, each once: the list is in order, and of two neighbours the second
+    /// finds that the first was there.
+    fn add_between(&self, near: &mut List) {
+        let mut last = None;
+        for i in 0..near.points().len() {
+            let [before, after] = self.beside[near.points()[i] as usize];
+            if before != last
+                && let Some(before) = before
+            {
+                near.push(before as usize);
+            }
+            if let Some(after) = after {
+                near.push(after as usize);
+            }
+            last = after;
         }
-        depth > DONE_MM
+    }
+
+    /// Pushes points out of a row of teeth, each for itself; bits of those that were so deep that they are to be
+    /// looked at again.
+    #[inline]
+    fn push(&self, points: [usize; FOUR], some: u32, row: &Row<'_>, skin: &mut Nodes) -> u32 {
+        let at = points.map(|point| row.to(self.drawn.at(point, &skin.place)));
+        bits(some).fold(0, |again, i| {
+            let Some(push) = row.field.push(at[i], CLEARANCE_MM, row.rather_ahead_mm) else {
+                return again;
+            };
+            let push = row.from(push) * PUSH_SHARE;
+            let depth = push.length();
+            let normal = push * depth.max(f32::MIN_POSITIVE).recip();
+            let [a, b] = self.nodes[points[i]];
+            for node in &[a, b][..if a == b { 1 } else { 2 }] {
+                let node = *node as usize;
+                skin.place[node] += push;
+                // Only the speed that brought it there goes: no rebound, and what is pressed lies still.
+                let inwards = skin.velocity[node].dot(normal).min(0.0);
+                skin.velocity[node] -= normal * inwards.max(depth * (-1.0 / STEP_S));
+            }
+            again | u32::from(depth > DONE_MM) << i
+        })
     }
 }
 
