@@ -3,7 +3,7 @@
 
 use glam::{Vec3, Vec3A, Vec4, vec3a};
 
-use super::four::{Places, bits};
+use super::four::Places;
 use crate::Mesh;
 
 /// Distance of the field's samples, mm.

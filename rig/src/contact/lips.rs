@@ -104,8 +104,9 @@ fn find_near(
 /// Draws the blocks that are near, and the columns beside them.
 fn draw(near: &[bool], zones: &[[f32; 2]], lip: &mut Profile, skin: &Nodes) {
     for (block, _) in near.iter().enumerate().filter(|(_, near)| **near) {
-        for column in block * LANES..(block + 1) * LANES {
-            lip.draw(column, zones[column], skin);
+        let first = block * LANES;
+        for (lane, zone) in zones[first..first + LANES].iter().enumerate() {
+            lip.draw(first + lane, *zone, skin);
         }
     }
     for (block, _) in near.iter().enumerate().filter(|(_, near)| !**near) {

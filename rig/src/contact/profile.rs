@@ -245,10 +245,11 @@ impl Profile {
             // Levels that are the same vertex count together, at the first of them.
             for level in (1..LEVELS).rev() {
                 let twin = self.twin[block][level];
-                for sum in 0..5 {
-                    let more = sums[level][sum] * twin;
-                    sums[level][sum] -= more;
-                    sums[level - 1][sum] += more;
+                let (before, own) = sums.split_at_mut(level);
+                for (into, sum) in before[level - 1].iter_mut().zip(&mut own[0]) {
+                    let more = *sum * twin;
+                    *sum -= more;
+                    *into += more;
                 }
             }
         }
