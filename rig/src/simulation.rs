@@ -5,7 +5,7 @@
 
 use std::sync::Arc;
 
-use glam::Vec3;
+use glam::{Affine3A, Vec3};
 
 use crate::contact::Contact;
 use crate::follow::Follow;
@@ -15,8 +15,8 @@ use crate::tissue::{Drive, Layered, Numbering, Springs, Tissue, cheeks};
 use crate::tongue::Tongue;
 use crate::{Control, Controls, Head, KeyFrame, TissueModel, jaw};
 
-/// Length of a step in ticks: 480 steps a second.
-pub const STEP_TICKS: i64 = 100;
+/// Length of a step in ticks: 320 steps a second.
+pub const STEP_TICKS: i64 = 150;
 /// The same in seconds.
 pub(crate) const STEP_S: f32 = STEP_TICKS as f32 / TICK_RATE as f32;
 /// How fast components follow their controls (critically damped), 1/s.
@@ -66,6 +66,7 @@ pub struct Simulation {
     epoch: u32,
     state: Controls,
     rate: Controls,
+    mandible: Affine3A,
     contacts: bool,
     lip_contact: bool,
     muscle_stiffness: f32,
@@ -84,6 +85,7 @@ impl Simulation {
             epoch: 0,
             state: Controls::default(),
             rate: Controls::default(),
+            mandible: head.mandible(0.0),
             model: Model::new(&head, &numbering),
             muscles: Muscles::new(&head),
             contact: Contact::new(&head, &numbering),
@@ -188,24 +190,27 @@ impl Simulation {
         let wanted = controls.clamped();
         let step_s = STEP_S / self.substeps as f32;
         for _ in 0..self.substeps {
-            self.follow(&wanted, step_s);
-            let mandible = self.head.mandible(self.state[Control::Jaw]);
-            self.muscles.contract(&self.head, &self.state, &mandible);
+            // Forces of this moment move the tissue to the end of the step; there the rest meets it.
             let drive = Drive {
                 head: &self.head,
                 state: &self.state,
-                mandible,
+                mandible: self.mandible,
                 muscles: &self.muscles,
                 muscle_stiffness: self.muscle_stiffness,
                 damping: self.damping,
                 volume: self.volume,
                 step_s,
             };
-            let tissue = self.model.tissue_mut();
-            tissue.step(&drive);
+            self.model.tissue_mut().step(&drive);
+            self.follow(&wanted, step_s);
+            self.pose();
             if self.contacts {
-                self.contact
-                    .resolve(tissue.skin_mut(), &mandible, &self.state, self.lip_contact);
+                self.contact.resolve(
+                    self.model.tissue_mut().skin_mut(),
+                    &self.mandible,
+                    &self.state,
+                    self.lip_contact,
+                );
             }
         }
         self.time += STEP_TICKS;
@@ -215,7 +220,7 @@ impl Simulation {
         Drive {
             head: &self.head,
             state: &self.state,
-            mandible: self.head.mandible(self.state[Control::Jaw]),
+            mandible: self.mandible,
             muscles: &self.muscles,
             muscle_stiffness: self.muscle_stiffness,
             damping: self.damping,
@@ -263,6 +268,8 @@ impl Simulation {
         self.epoch = frame.epoch;
         self.state = frame.state;
         self.rate = frame.state_rate;
+        self.pose();
+        let tissue = self.model.tissue_mut();
         let nodes = tissue.skin_mut();
         let moving = &self.numbering.vertices[..self.numbering.movable];
         for (i, &v) in moving.iter().enumerate() {
@@ -286,6 +293,13 @@ impl Simulation {
         self.numbering.vertices[..self.numbering.movable]
             .iter()
             .enumerate()
+    }
+
+    /// Puts mandible and fibres where the state has them.
+    fn pose(&mut self) {
+        self.mandible = self.head.mandible(self.state[Control::Jaw]);
+        self.muscles
+            .contract(&self.head, &self.state, &self.mandible);
     }
 
     /// Muscles, jaw and the rest follow their controls with inertia: no joint moves at once.

@@ -13,14 +13,14 @@ use crate::mesh::ramp;
 use crate::muscle::Space;
 
 /// Stiffness per mass of a skin edge.
-pub(super) const EDGE: f32 = 34_000.0;
+pub(super) const EDGE: f32 = 20_400.0;
 /// Of the spring to the bone where the skin lies thin on it, and where it lies on soft tissue.
-const BONE_THIN: f32 = 60_000.0;
-const BONE_SOFT: f32 = 1_500.0;
+const BONE_THIN: f32 = 36_000.0;
+const BONE_SOFT: f32 = 900.0;
 /// What is left of that stiffness where the forehead's skin slides over the bone.
 const FOREHEAD: f32 = 0.12;
 /// Of a lid's hold on its margin.
-pub(super) const LID: f32 = 150_000.0;
+pub(super) const LID: f32 = 90_000.0;
 /// Where on a lip or beside it a vertex lies: above the slit, below it, or neither.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Side {

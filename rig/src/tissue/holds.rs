@@ -14,7 +14,7 @@ use crate::muscle::{Contraction, Fibre};
 use crate::{Head, Muscle};
 
 /// Of a spring to a muscle fibre right beside the vertex.
-const FIBRE: f32 = 26_000.0;
+const FIBRE: f32 = 15_600.0;
 /// A fibre holds vertices within this distance, mm; one of the thin sheets within the other.
 const FIBRE_REACH_MM: f32 = 13.0;
 const SHEET_REACH_MM: f32 = 19.0;

@@ -2,28 +2,30 @@
 
 use glam::Vec3A;
 
-use super::{EDGE, SLACK, STOP, Springs, VOLUME};
+use super::simd::MOST;
+use super::{BLEND, EASE, EDGE, SLACK, STOP, SpringPass, Springs, VOLUME};
 use crate::Control;
 use crate::tissue::Drive;
 
 impl Springs {
-    /// Energy per mass, mm²/s². The velocities are those half a step before the places: over many steps
-    /// the mean tells whether energy leaves or comes.
+    /// Energy per mass, mm²/s². Leapfrog has velocities half a step before and half a step after the places; of
+    /// a mode that swings, what it conserves is with the product of the two.
     pub(super) fn energy_now(&self, drive: &Drive<'_>) -> f64 {
+        let mut after = self.clone();
+        after.accelerate(drive);
         let place = |i: usize| self.nodes.place[i].as_dvec3();
         let mut energy = 0.0;
         self.mesh.each_node(|i, node| {
             if i >= self.movable {
                 return;
             }
-            energy += 0.5 * self.nodes.velocity[i].as_dvec3().length_squared();
+            let (before, after) = (self.nodes.velocity[i], after.nodes.velocity[i]);
+            energy += 0.5 * before.as_dvec3().dot(after.as_dvec3());
             for (other, rest) in &node.edges {
-                let stretch = place(*other).distance(place(i)) - f64::from(*rest);
-                let stiffness =
-                    f64::from(EDGE) * if stretch < 0.0 { f64::from(SLACK) } else { 1.0 };
+                let length = place(*other).distance(place(i));
                 // Half of it, where the edge is met again at its other end.
-                let share = if *other < self.movable { 0.25 } else { 0.5 };
-                energy += f64::from(self.per_mass) * share * stiffness * stretch * stretch;
+                let share = if *other < self.movable { 0.5 } else { 1.0 };
+                energy += f64::from(self.per_mass) * share * edge(length, f64::from(*rest));
             }
             let away = place(i) - node.rest.as_dvec3();
             let carried = drive.mandible.transform_point3a(node.rest) - node.rest;
@@ -33,7 +35,7 @@ impl Springs {
             let mut held = f64::from(node.soft) * off.length_squared()
                 + f64::from(node.firm) * beyond * beyond
                 + f64::from(STOP) * deep * deep;
-            for (stiffness, shift) in node.ties(drive.muscles.shift()) {
+            for (stiffness, shift) in node.ties(self.places.shift()) {
                 let off = (away - shift.as_dvec3()).length_squared();
                 held += f64::from(stiffness * drive.muscle_stiffness) * off;
             }
@@ -51,4 +53,21 @@ impl Springs {
         }
         energy
     }
+}
+
+/// Work done on an edge of length `rest` to make it `length`: the kernel's `length * stress(strain)`, integrated
+/// over the length, which is its stress over Green's strain.
+fn edge(length: f64, rest: f64) -> f64 {
+    let (slack, blend) = (f64::from(SLACK), f64::from(BLEND));
+    let strain = 0.5 * (length * length / (rest * rest) - 1.0);
+    let torn = (strain - f64::from(MOST)).max(0.0);
+    let strain = strain - torn;
+    let near = strain.abs().min(blend);
+    let past = strain.abs() - near;
+    let odd = near.powi(3) / (6.0 * blend) + 0.5 * past * (blend + past);
+    let even = 0.5 * strain * strain;
+    let eased = 0.25 * (strain - f64::from(EASE)).max(0.0).powi(2);
+    let work = 0.5 * ((1.0 + slack) * even + (1.0 - slack) * odd.copysign(strain)) - eased
+        + torn * SpringPass::stress(strain);
+    f64::from(EDGE) * rest * rest * work
 }

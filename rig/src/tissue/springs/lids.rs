@@ -8,6 +8,8 @@ use crate::{Control, Head, Muscle};
 
 /// The lids aim past each other by this factor, since the skin round them holds them back.
 const OVERSHOOT: f32 = 1.22;
+/// A lid's hold less than this holds nothing to speak of (it counts with its square).
+const LEAST: f32 = 0.05;
 /// How much of the gaze's turn the upper lid follows.
 const FOLLOW: f32 = 0.55;
 
@@ -18,6 +20,9 @@ struct Margin {
     left: bool,
     /// From the eye's centre to the node at rest, mm.
     out: Vec3A,
+    /// The same, a quarter turn about the x axis on, and with what of it turns.
+    on: Vec3A,
+    turning: Vec3A,
     /// The eye's centre, mm.
     centre: Vec3A,
     stiffness: f32,
@@ -35,10 +40,13 @@ impl Lids {
         let margin = |lid: &crate::Lid| {
             let eye = &head.eyes[usize::from(!lid.left)];
             let rest = head.skin.mesh.positions[lid.vertex as usize];
+            let out = Vec3A::from(rest - eye.centre);
             Some(Margin {
                 node: numbering.moving(lid.vertex)?,
                 left: lid.left,
-                out: (rest - eye.centre).into(),
+                out,
+                on: vec3a(0.0, -out.z, out.y),
+                turning: vec3a(0.0, out.y, out.z),
                 centre: eye.centre.into(),
                 stiffness: LID * lid.hold * lid.hold,
                 turn: lid.turn * OVERSHOOT,
@@ -50,7 +58,8 @@ impl Lids {
                 },
             })
         };
-        Self(head.lids.iter().filter_map(margin).collect())
+        let held = |lid: &&crate::Lid| lid.hold > LEAST;
+        Self(head.lids.iter().filter(held).filter_map(margin).collect())
     }
 
     pub(super) fn len(&self) -> usize {
@@ -74,8 +83,7 @@ impl Lids {
             let closed = closed[usize::from(margin.left)];
             let turn = margin.turn * closed + margin.follow * (1.0 - closed) * gaze;
             let (s, c) = sin_cos(-turn);
-            let out = margin.out;
-            let target = margin.centre + vec3a(out.x, out.y * c - out.z * s, out.y * s + out.z * c);
+            let target = margin.centre + margin.out + margin.turning * (c - 1.0) + margin.on * s;
             pull(margin.node as usize, target, margin.stiffness);
         }
     }

@@ -1,10 +1,10 @@
 //! Eight lanes of AVX2 with FMA; see `avx512` for how neighbours are fetched.
 
 use std::arch::x86_64::{
-    __m128, __m256, _CMP_GE_OQ, _mm_load_ps, _mm_store_ps, _mm256_add_ps, _mm256_and_ps,
+    __m128, __m256, _CMP_GE_OQ, _mm_load_ps, _mm_store_ps, _mm256_and_ps, _mm256_andnot_ps,
     _mm256_castpd_ps, _mm256_castps_pd, _mm256_castps128_ps256, _mm256_castps256_ps128,
     _mm256_cmp_ps, _mm256_extractf128_ps, _mm256_fmadd_ps, _mm256_fnmadd_ps, _mm256_insertf128_ps,
-    _mm256_loadu_ps, _mm256_max_ps, _mm256_mul_ps, _mm256_rsqrt_ps, _mm256_set1_ps,
+    _mm256_loadu_ps, _mm256_max_ps, _mm256_min_ps, _mm256_mul_ps, _mm256_rsqrt_ps, _mm256_set1_ps,
     _mm256_setzero_ps, _mm256_sub_ps, _mm256_unpackhi_pd, _mm256_unpackhi_ps, _mm256_unpacklo_pd,
     _mm256_unpacklo_ps,
 };
@@ -37,8 +37,8 @@ pub(super) fn drift(nodes: &mut Nodes, step_s: f32) {
 }
 
 #[target_feature(enable = "avx2,fma")]
-pub(super) fn stretch(mesh: &Mesh, nodes: &Nodes, force: &mut [Vec3A]) {
-    kernel::stretch::<Eight>(mesh, nodes, force);
+pub(super) fn stretch(mesh: &Mesh, nodes: &Nodes, force: &mut [Vec3A], law: [f32; 3]) {
+    kernel::stretch::<Eight>(mesh, nodes, force, law);
 }
 
 /// Two nodes, one to each half.
@@ -112,12 +112,6 @@ impl Lanes for Eight {
     }
 
     #[inline(always)]
-    fn add(self, other: Self) -> Self {
-        // SAFETY: see `splat`.
-        Self(unsafe { _mm256_add_ps(self.0, other.0) })
-    }
-
-    #[inline(always)]
     fn sub(self, other: Self) -> Self {
         // SAFETY: see `splat`.
         Self(unsafe { _mm256_sub_ps(self.0, other.0) })
@@ -136,9 +130,21 @@ impl Lanes for Eight {
     }
 
     #[inline(always)]
+    fn abs(self) -> Self {
+        // SAFETY: see `splat`.
+        Self(unsafe { _mm256_andnot_ps(_mm256_set1_ps(-0.0), self.0) })
+    }
+
+    #[inline(always)]
     fn max(self, other: Self) -> Self {
         // SAFETY: see `splat`.
         Self(unsafe { _mm256_max_ps(self.0, other.0) })
+    }
+
+    #[inline(always)]
+    fn min(self, other: Self) -> Self {
+        // SAFETY: see `splat`.
+        Self(unsafe { _mm256_min_ps(self.0, other.0) })
     }
 
     #[inline(always)]
@@ -163,10 +169,10 @@ impl Lanes for Eight {
     }
 
     #[inline(always)]
-    unsafe fn fetch(nodes: &[Vec3A], index: &[u32; 16], part: usize) -> [Self; 3] {
-        let (from, index) = (nodes.as_ptr(), &index[8 * part..8 * part + 8]);
-        // SAFETY: the caller's indices are below the number of nodes; a node is aligned to 16.
-        columns(|k| unsafe { _mm_load_ps(from.add(index[k] as usize).cast()) })
+    unsafe fn fetch(nodes: &[Vec3A], offset: &[u32; 16], part: usize) -> [Self; 3] {
+        let (from, index) = (nodes.as_ptr(), &offset[8 * part..8 * part + 8]);
+        // SAFETY: the caller's offsets are those of nodes; a node is aligned to 16.
+        columns(|k| unsafe { _mm_load_ps(from.byte_add(offset[k] as usize).cast()) })
     }
 
     #[inline(always)]

@@ -5,12 +5,12 @@
 //! twice as fast as three gathers; elsewhere no slower.
 
 use std::arch::x86_64::{
-    __m128, __m512, _CMP_GE_OQ, _mm_load_ps, _mm_store_ps, _mm512_add_ps, _mm512_castpd_ps,
+    __m128, __m512, _CMP_GE_OQ, _mm_load_ps, _mm_store_ps, _mm512_abs_ps, _mm512_castpd_ps,
     _mm512_castps_pd, _mm512_castps128_ps512, _mm512_castps512_ps128, _mm512_cmp_ps_mask,
     _mm512_extractf32x4_ps, _mm512_fmadd_ps, _mm512_fnmadd_ps, _mm512_insertf32x4, _mm512_loadu_ps,
-    _mm512_maskz_mov_ps, _mm512_max_ps, _mm512_mul_ps, _mm512_rsqrt14_ps, _mm512_set1_ps,
-    _mm512_setzero_ps, _mm512_sub_ps, _mm512_unpackhi_pd, _mm512_unpackhi_ps, _mm512_unpacklo_pd,
-    _mm512_unpacklo_ps,
+    _mm512_maskz_mov_ps, _mm512_max_ps, _mm512_min_ps, _mm512_mul_ps, _mm512_rsqrt14_ps,
+    _mm512_set1_ps, _mm512_setzero_ps, _mm512_storeu_ps, _mm512_sub_ps, _mm512_unpackhi_pd,
+    _mm512_unpackhi_ps, _mm512_unpacklo_pd, _mm512_unpacklo_ps,
 };
 
 use glam::Vec3A;
@@ -41,8 +41,8 @@ pub(super) fn drift(nodes: &mut Nodes, step_s: f32) {
 }
 
 #[target_feature(enable = "avx512f")]
-pub(super) fn stretch(mesh: &Mesh, nodes: &Nodes, force: &mut [Vec3A]) {
-    kernel::stretch::<Sixteen>(mesh, nodes, force);
+pub(super) fn stretch(mesh: &Mesh, nodes: &Nodes, force: &mut [Vec3A], law: [f32; 3]) {
+    kernel::stretch::<Sixteen>(mesh, nodes, force, law);
 }
 
 /// Four nodes, one to each quarter.
@@ -123,12 +123,6 @@ impl Lanes for Sixteen {
     }
 
     #[inline(always)]
-    fn add(self, other: Self) -> Self {
-        // SAFETY: see `splat`.
-        Self(unsafe { _mm512_add_ps(self.0, other.0) })
-    }
-
-    #[inline(always)]
     fn sub(self, other: Self) -> Self {
         // SAFETY: see `splat`.
         Self(unsafe { _mm512_sub_ps(self.0, other.0) })
@@ -147,9 +141,21 @@ impl Lanes for Sixteen {
     }
 
     #[inline(always)]
+    fn abs(self) -> Self {
+        // SAFETY: see `splat`.
+        Self(unsafe { _mm512_abs_ps(self.0) })
+    }
+
+    #[inline(always)]
     fn max(self, other: Self) -> Self {
         // SAFETY: see `splat`.
         Self(unsafe { _mm512_max_ps(self.0, other.0) })
+    }
+
+    #[inline(always)]
+    fn min(self, other: Self) -> Self {
+        // SAFETY: see `splat`.
+        Self(unsafe { _mm512_min_ps(self.0, other.0) })
     }
 
     #[inline(always)]
@@ -174,10 +180,10 @@ impl Lanes for Sixteen {
     }
 
     #[inline(always)]
-    unsafe fn fetch(nodes: &[Vec3A], index: &[u32; 16], _part: usize) -> [Self; 3] {
+    unsafe fn fetch(nodes: &[Vec3A], offset: &[u32; 16], _part: usize) -> [Self; 3] {
         let from = nodes.as_ptr();
-        // SAFETY: the caller's indices are below the number of nodes; a node is aligned to 16.
-        columns(|k| unsafe { _mm_load_ps(from.add(index[k] as usize).cast()) })
+        // SAFETY: the caller's offsets are those of nodes; a node is aligned to 16.
+        columns(|k| unsafe { _mm_load_ps(from.byte_add(offset[k] as usize).cast()) })
     }
 
     #[inline(always)]
@@ -201,6 +207,21 @@ impl Lanes for Sixteen {
                 _mm512_mul_ps(new, _mm512_set1_ps(keep))
             };
             spill(nodes, k, new);
+        }
+    }
+
+    #[inline(always)]
+    fn drift(places: &mut [Vec3A], velocities: &[Vec3A], first: usize, step: f32) {
+        let to = places[first..first + 16].as_mut_ptr().cast::<f32>();
+        let from = velocities[first..first + 16].as_ptr().cast::<f32>();
+        for k in 0..4 {
+            // SAFETY: sixteen nodes of four floats, see the slices.
+            unsafe {
+                let place = _mm512_loadu_ps(to.add(16 * k));
+                let velocity = _mm512_loadu_ps(from.add(16 * k));
+                let place = _mm512_fmadd_ps(velocity, _mm512_set1_ps(step), place);
+                _mm512_storeu_ps(to.add(16 * k), place);
+            }
         }
     }
 

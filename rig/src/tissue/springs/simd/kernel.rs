@@ -18,6 +18,10 @@ pub(in crate::tissue::springs) struct Kick {
     /// Stiffness of skin edges; what is left of it in one that is pressed together.
     pub edge: f32,
     pub slack: f32,
+    /// Strain within which it goes from the one to the other.
+    pub blend: f32,
+    /// Strain beyond which an edge eases to half its stiffness.
+    pub firm: f32,
     /// Stiffness of the bone.
     pub bone: f32,
     /// Scales the springs to muscles.
@@ -27,6 +31,10 @@ pub(in crate::tissue::springs) struct Kick {
     /// Bit k mod 128 is set when fibre k is away from rest.
     pub moved: u128,
 }
+
+/// Strain beyond which an edge answers with the same stress: twice its length. Else the force on one that is torn
+/// at would grow with the third power of its length, faster than any step can follow.
+pub(in crate::tissue::springs) const MOST: f32 = 1.5;
 
 const AXES: Range<usize> = 0..3;
 
@@ -44,11 +52,53 @@ fn square<L: Lanes>(v: [L; 3]) -> L {
     v[2].mul_add(v[2], v[1].mul_add(v[1], x))
 }
 
+/// How an edge answers to strain (Green's: half of what its squared length has gained, which needs no root):
+/// with its stiffness when stretched, half of that beyond `firm`, with `slack` of it pressed together, and a
+/// parabola round rest that joins the two without a kink.
+#[derive(Clone, Copy)]
+struct Give<L> {
+    even: L,
+    odd: L,
+    blend: L,
+    curve: L,
+    firm: L,
+    ease: L,
+    most: L,
+}
+
+impl<L: Lanes> Give<L> {
+    #[inline(always)]
+    fn new(slack: f32, blend: f32, firm: f32) -> Self {
+        let odd = 0.5 * (1.0 - slack);
+        Self {
+            even: L::splat(0.5 * (1.0 + slack)),
+            odd: L::splat(odd),
+            blend: L::splat(blend),
+            curve: L::splat(odd * 0.5 / blend),
+            firm: L::splat(firm),
+            ease: L::splat(-0.5),
+            most: L::splat(MOST),
+        }
+    }
+
+    #[inline(always)]
+    fn stress(&self, strain: L) -> L {
+        let strain = strain.min(self.most);
+        let size = strain.abs();
+        let near = size.min(self.blend);
+        let straight = size.mul_add(self.odd, strain.mul(self.even));
+        let past = strain.sub(self.firm).max(L::splat(0.0));
+        let straight = past.mul_add(self.ease, straight);
+        // near * (near * curve - odd): the parabola instead of the straight part.
+        near.mul_add(near.mul(self.curve).sub(self.odd), straight)
+    }
+}
+
 /// Sum of what a block's edges pull with, over their stiffness; with `VOLUME`, also of the areas between
 /// neighbours.
 ///
 /// # Safety
-/// The rows' indices are below the number of nodes.
+/// The rows' offsets are those of nodes.
 #[inline(always)]
 unsafe fn edges<L: Lanes, const VOLUME: bool>(
     mesh: &Mesh,
@@ -56,23 +106,29 @@ unsafe fn edges<L: Lanes, const VOLUME: bool>(
     part: usize,
     nodes: &[Vec3A],
     own: [L; 3],
-    slack: L,
+    give: &Give<L>,
 ) -> ([L; 3], [L; 3]) {
-    let (one, zero) = (L::splat(1.0), L::splat(0.0));
+    let (minus_half, zero) = (L::splat(-0.5), L::splat(0.0));
     let (mut pull, mut area, mut before) = ([zero; 3], [zero; 3], [zero; 3]);
     let rows = &mesh.rows[block.rows[0] as usize..block.rows[1] as usize];
     let corners = block.corners.unwrap_or(0) as usize;
     for (r, row) in rows.iter().enumerate() {
         // SAFETY: as the caller promises.
-        let other = unsafe { L::fetch(nodes, &row.index, part) };
+        let other = unsafe { L::fetch(nodes, &row.offset, part) };
         let d = [
             other[0].sub(own[0]),
             other[1].sub(own[1]),
             other[2].sub(own[2]),
         ];
-        let rest = L::load(&row.rest, part);
-        let strain = one.sub(rest.mul(square(d).rsqrt()));
-        let stress = strain.max(strain.mul(slack)).where_positive(rest);
+        // Half over the squared length at rest.
+        let grown = L::load(&row.grown, part);
+        let length = d[2].mul_add(d[2], d[1].mul(d[1]));
+        let length = d[0].mul_add(d[0], length);
+        let mut stress = give.stress(length.mul_add(grown, minus_half));
+        if VOLUME {
+            // Only round a volume is a neighbour met twice, the second time without a spring.
+            stress = stress.where_positive(grown);
+        }
         for axis in AXES {
             pull[axis] = d[axis].mul_add(stress, pull[axis]);
         }
@@ -98,9 +154,9 @@ pub(super) fn kick<L: Lanes>(
     kick: &Kick,
 ) {
     let zero = L::splat(0.0);
-    let (edge, slack, bone, muscle) = (
+    let give = Give::new(kick.slack, kick.blend, kick.firm);
+    let (edge, bone, muscle) = (
         L::splat(kick.edge),
-        L::splat(kick.slack),
         L::splat(kick.bone),
         L::splat(kick.muscle),
     );
@@ -111,12 +167,12 @@ pub(super) fn kick<L: Lanes>(
         for part in 0..BLOCK / L::N {
             let first = b * BLOCK + part * L::N;
             let own = L::own(&nodes.place, first);
-            // SAFETY: `Mesh::new` has checked the indices against the number of nodes, and `Mesh::check` that number.
+            // SAFETY: `Mesh::new` has checked the offsets against the number of nodes, and `Mesh::check` that number.
             let (pull, area) = unsafe {
                 if block.corners.is_some() {
-                    edges::<L, true>(mesh, block, part, &nodes.place, own, slack)
+                    edges::<L, true>(mesh, block, part, &nodes.place, own, &give)
                 } else {
-                    edges::<L, false>(mesh, block, part, &nodes.place, own, slack)
+                    edges::<L, false>(mesh, block, part, &nodes.place, own, &give)
                 }
             };
             if block.corners.is_some() {
@@ -141,17 +197,11 @@ pub(super) fn kick<L: Lanes>(
                 let ties = &mesh.ties[block.ties[0] as usize..block.ties[1] as usize];
                 let mut drawn = [zero; 3];
                 for tie in ties {
-                    // SAFETY: as above, against the number of points.
-                    let (here, there) = unsafe {
-                        (
-                            L::fetch(shift, &tie.index, part),
-                            L::fetch(shift, &tie.next, part),
-                        )
-                    };
-                    let (a, b) = (L::load(&tie.here, part), L::load(&tie.there, part));
+                    // SAFETY: as above, against the number of places.
+                    let place = unsafe { L::fetch(shift, &tie.offset, part) };
+                    let stiffness = L::load(&tie.stiffness, part);
                     for axis in AXES {
-                        drawn[axis] = here[axis].mul_add(a, drawn[axis]);
-                        drawn[axis] = there[axis].mul_add(b, drawn[axis]);
+                        drawn[axis] = place[axis].mul_add(stiffness, drawn[axis]);
                     }
                 }
                 for axis in AXES {
@@ -194,31 +244,24 @@ pub(super) fn kick<L: Lanes>(
 /// See [`super::drift`].
 #[inline(always)]
 pub(super) fn drift<L: Lanes>(nodes: &mut Nodes, step_s: f32) {
-    let whole = nodes.place.len().min(nodes.velocity.len()) / L::N * L::N;
-    let (places, velocities) = (&mut nodes.place, &nodes.velocity);
-    for first in (0..whole).step_by(L::N) {
-        for (place, velocity) in places[first..first + L::N]
-            .iter_mut()
-            .zip(&velocities[first..first + L::N])
-        {
-            *place += *velocity * step_s;
-        }
-    }
-    for (place, velocity) in places[whole..].iter_mut().zip(&velocities[whole..]) {
-        *place += *velocity * step_s;
+    let count = nodes.place.len().min(nodes.velocity.len()) / BLOCK * BLOCK;
+    for first in (0..count).step_by(L::N) {
+        L::drift(&mut nodes.place, &nodes.velocity, first, step_s);
     }
 }
 
 /// See [`super::stretch`]; sizes are checked there.
 #[inline(always)]
-pub(super) fn stretch<L: Lanes>(mesh: &Mesh, nodes: &Nodes, force: &mut [Vec3A]) {
+pub(super) fn stretch<L: Lanes>(mesh: &Mesh, nodes: &Nodes, force: &mut [Vec3A], law: [f32; 3]) {
+    let [slack, blend, firm] = law;
+    let give = Give::new(slack, blend, firm);
     for (b, block) in mesh.blocks.iter().enumerate() {
         for part in 0..BLOCK / L::N {
             let first = b * BLOCK + part * L::N;
             let own = L::own(&nodes.place, first);
-            // SAFETY: `Mesh::new` has checked the indices against the number of nodes, and `Mesh::check` that number.
+            // SAFETY: `Mesh::new` has checked the offsets against the number of nodes, and `Mesh::check` that number.
             let (pull, _) =
-                unsafe { edges::<L, false>(mesh, block, part, &nodes.place, own, L::splat(1.0)) };
+                unsafe { edges::<L, false>(mesh, block, part, &nodes.place, own, &give) };
             L::put(force, first, pull);
         }
     }

@@ -11,24 +11,27 @@ use crate::tissue::Nodes;
 /// Nodes in a block.
 pub(in crate::tissue::springs) const BLOCK: usize = 16;
 
+/// Bytes of a node; whoever has 2^28 of them has other troubles.
+const NODE: u32 = size_of::<Vec3A>() as u32;
+
 /// One spring to a neighbour for each node of a block.
 #[derive(Clone, Debug)]
 #[repr(C, align(64))]
 pub(super) struct Row {
-    pub index: [u32; BLOCK],
-    /// Length at rest, mm; below 0 where there is no spring (the node before it, or the first, again).
-    pub rest: [f32; BLOCK],
+    /// Where the neighbours are: bytes from the first node.
+    pub offset: [u32; BLOCK],
+    /// Half over the squared length at rest, 1/mm²; below 0 where there is no spring (the node before it, or
+    /// the first, again).
+    pub grown: [f32; BLOCK],
 }
 
-/// One hold on a fibre for each node of a block: between two control points.
+/// One hold on a fibre for each node of a block.
 #[derive(Clone, Debug)]
 #[repr(C, align(64))]
 pub(super) struct Tie {
-    pub index: [u32; BLOCK],
-    pub next: [u32; BLOCK],
-    /// Stiffness by the share of each of the two.
-    pub here: [f32; BLOCK],
-    pub there: [f32; BLOCK],
+    /// Where the place is: bytes from the first.
+    pub offset: [u32; BLOCK],
+    pub stiffness: [f32; BLOCK],
 }
 
 /// What holds sixteen nodes from below.
@@ -86,9 +89,8 @@ pub(in crate::tissue::springs) struct Neighbour {
 pub(in crate::tissue::springs) struct Hold {
     pub node: u32,
     pub fibre: u32,
-    /// Control point among all fibres' points; the hold lies `share` of the way from it to the next.
-    pub point: u32,
-    pub share: f32,
+    /// Which of the places on fibres it is.
+    pub place: u32,
     pub stiffness: f32,
 }
 
@@ -114,11 +116,9 @@ impl Laid<'_> {
         shift: &[Vec3A],
     ) -> impl Iterator<Item = (f32, Vec3A)> {
         let l = self.lane;
-        self.ties.iter().filter_map(move |tie| {
-            let stiffness = tie.here[l] + tie.there[l];
-            let [here, there] = [tie.index[l], tie.next[l]].map(|i| shift[i as usize]);
-            (stiffness > 0.0).then(|| (stiffness, here.lerp(there, tie.there[l] / stiffness)))
-        })
+        self.ties
+            .iter()
+            .map(move |tie| (tie.stiffness[l], shift[(tie.offset[l] / NODE) as usize]))
     }
 }
 
@@ -130,19 +130,19 @@ pub(in crate::tissue::springs) struct Mesh {
     pub(super) corners: Vec<[f32; BLOCK]>,
     pub(super) ties: Vec<Tie>,
     nodes: usize,
-    points: usize,
+    places: usize,
     gradients: usize,
 }
 
 impl Mesh {
     /// Of nodes that stand on `ground` with these neighbours (as many as grounds), among `nodes` nodes of
-    /// which the first ones move; `holds` sorted by node, on `points` points of fibres.
+    /// which the first ones move; `holds` sorted by node, on `places` places of fibres.
     pub(in crate::tissue::springs) fn new(
         ground: &[Ground],
         neighbours: &[Vec<Neighbour>],
         holds: &[Hold],
         nodes: usize,
-        points: usize,
+        places: usize,
     ) -> Self {
         let mut mesh = Self {
             blocks: Vec::with_capacity(ground.len().div_ceil(BLOCK)),
@@ -150,24 +150,24 @@ impl Mesh {
             corners: Vec::new(),
             ties: Vec::new(),
             nodes: nodes.max(ground.len().next_multiple_of(BLOCK)),
-            points,
+            places,
             gradients: 0,
         };
         for first in (0..ground.len()).step_by(BLOCK) {
             let lanes = first..(first + BLOCK).min(ground.len());
             mesh.block(&ground[lanes.clone()], &neighbours[lanes], holds, first);
         }
-        let inside = |index: &u32, count: usize| (*index as usize) < count;
+        let inside = |offset: &u32, count: usize| {
+            offset.is_multiple_of(NODE) && ((*offset / NODE) as usize) < count
+        };
         let sound = mesh
             .rows
             .iter()
-            .all(|r| r.index.iter().all(|i| inside(i, mesh.nodes)))
-            && mesh.ties.iter().all(|t| {
-                t.index
-                    .iter()
-                    .chain(&t.next)
-                    .all(|i| inside(i, points.max(1)))
-            });
+            .all(|r| r.offset.iter().all(|i| inside(i, mesh.nodes)))
+            && mesh
+                .ties
+                .iter()
+                .all(|t| t.offset.iter().all(|i| inside(i, places)));
         // The passes rely on this: it is what makes their unchecked fetches sound.
         assert!(sound, "a spring ends at a node or point that is not there");
         mesh
@@ -181,22 +181,38 @@ impl Mesh {
             [0, 1, 2].map(|axis| lanes(&|g: &Ground| value(g)[axis]))
         };
         let volume = near.iter().flatten().any(|n| n.corner != 0.0);
+        // Where there is no volume, a neighbour without a spring says nothing.
+        let near: Vec<Vec<Neighbour>> = near
+            .iter()
+            .map(|list| {
+                let says = |n: &&Neighbour| volume || n.rest_mm >= 0.0;
+                list.iter().filter(says).copied().collect()
+            })
+            .collect();
         let height = near.iter().map(Vec::len).max().unwrap_or(0);
         let rows = self.rows.len() as u32;
         let corners = volume.then_some(self.corners.len() as u32);
         for r in 0..height {
             let mut row = Row {
-                index: std::array::from_fn(|l| (first + l) as u32),
-                rest: [-1.0; BLOCK],
+                offset: std::array::from_fn(|l| (first + l) as u32 * NODE),
+                grown: [-1.0; BLOCK],
             };
             let mut corner = [0.0; BLOCK];
             for (l, near) in near.iter().enumerate() {
-                // Past its last neighbour a node sees that one again: no spring, no area.
-                if let Some(n) = near.get(r).or(near.last()) {
-                    row.index[l] = n.node;
-                    if r < near.len() {
-                        (row.rest[l], corner[l]) = (n.rest_mm, n.corner);
+                match (near.get(r), near.last()) {
+                    (Some(n), _) => {
+                        row.offset[l] = n.node * NODE;
+                        let none = n.rest_mm < 0.0;
+                        row.grown[l] = if none {
+                            -1.0
+                        } else {
+                            0.5 / (n.rest_mm * n.rest_mm)
+                        };
+                        corner[l] = n.corner;
                     }
+                    // Past its last neighbour: no area with that one again, or no way to itself.
+                    (None, Some(last)) if volume => row.offset[l] = last.node * NODE,
+                    _ => {}
                 }
             }
             self.rows.push(row);
@@ -221,10 +237,8 @@ impl Mesh {
         for r in 0..of_lane.iter().map(|list| list.len()).max().unwrap_or(0) {
             let of = |l: usize| of_lane[l].get(r);
             self.ties.push(Tie {
-                index: std::array::from_fn(|l| of(l).map_or(0, |h| h.point)),
-                next: std::array::from_fn(|l| of(l).map_or(0, |h| h.point + 1)),
-                here: std::array::from_fn(|l| of(l).map_or(0.0, |h| h.stiffness * (1.0 - h.share))),
-                there: std::array::from_fn(|l| of(l).map_or(0.0, |h| h.stiffness * h.share)),
+                offset: std::array::from_fn(|l| of(l).map_or(0, |h| h.place * NODE)),
+                stiffness: std::array::from_fn(|l| of(l).map_or(0.0, |h| h.stiffness)),
             });
         }
         self.blocks.push(Block {
@@ -253,9 +267,9 @@ impl Mesh {
         self.nodes
     }
 
-    /// Control points of fibres that the ties name.
-    pub(in crate::tissue::springs) fn points(&self) -> usize {
-        self.points
+    /// Places on fibres that the ties name.
+    pub(in crate::tissue::springs) fn places(&self) -> usize {
+        self.places
     }
 
     /// How many gradients of volumes there are: sixteen per block that has any.
@@ -282,8 +296,10 @@ impl Mesh {
                     lane: l,
                     edges: rows
                         .iter()
-                        .filter(|r| r.rest[l] >= 0.0)
-                        .map(|r| (r.index[l] as usize, r.rest[l]))
+                        .filter(|r| {
+                            r.grown[l] >= 0.0 && (r.offset[l] / NODE) as usize != b * BLOCK + l
+                        })
+                        .map(|r| ((r.offset[l] / NODE) as usize, (0.5 / r.grown[l]).sqrt()))
                         .collect(),
                     ties: &self.ties[block.ties[0] as usize..block.ties[1] as usize],
                     rest: axis(&block.rest),
@@ -314,14 +330,14 @@ impl Mesh {
     }
 
     /// Panics unless the lists are of the size that this was made for.
-    pub(super) fn check(&self, nodes: &Nodes, points: usize, gradients: usize) {
+    pub(super) fn check(&self, nodes: &Nodes, places: usize, gradients: usize) {
         assert!(
             nodes.place.len() == self.nodes && nodes.velocity.len() == self.nodes,
             "as many nodes as the mesh was made for"
         );
         assert_eq!(
-            points, self.points,
-            "as many points as the mesh was made for"
+            places, self.places,
+            "as many places as the mesh was made for"
         );
         assert_eq!(
             gradients, self.gradients,

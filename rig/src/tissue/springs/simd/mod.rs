@@ -26,7 +26,7 @@ mod mesh;
 mod portable;
 
 use glam::Vec3A;
-pub(super) use kernel::Kick;
+pub(super) use kernel::{Kick, MOST};
 pub(super) use mesh::{Ground, Hold, Mesh, Neighbour};
 
 use crate::tissue::Nodes;
@@ -117,12 +117,12 @@ pub(super) fn drift(isa: Isa, nodes: &mut Nodes, step_s: f32) {
     on!(isa, drift(nodes, step_s));
 }
 
-/// Forces of the edges alone, for measuring.
+/// Forces of the edges alone, for measuring; `law` is slack, blend and firm of [`Kick`].
 ///
 /// # Panics
 /// When `nodes` or `force` are not of the size that `mesh` was made for.
-pub(super) fn stretch(isa: Isa, mesh: &Mesh, nodes: &Nodes, force: &mut [Vec3A]) {
-    mesh.check(nodes, mesh.points(), mesh.gradients());
+pub(super) fn stretch(isa: Isa, mesh: &Mesh, nodes: &Nodes, force: &mut [Vec3A], law: [f32; 3]) {
+    mesh.check(nodes, mesh.places(), mesh.gradients());
     assert_eq!(force.len(), nodes.place.len(), "one force per node");
-    on!(isa, stretch(mesh, nodes, force));
+    on!(isa, stretch(mesh, nodes, force, law));
 }

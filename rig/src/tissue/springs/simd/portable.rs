@@ -32,11 +32,6 @@ impl Lanes for Four {
     }
 
     #[inline(always)]
-    fn add(self, other: Self) -> Self {
-        Self(self.0 + other.0)
-    }
-
-    #[inline(always)]
     fn sub(self, other: Self) -> Self {
         Self(self.0 - other.0)
     }
@@ -53,8 +48,18 @@ impl Lanes for Four {
     }
 
     #[inline(always)]
+    fn abs(self) -> Self {
+        Self(self.0.abs())
+    }
+
+    #[inline(always)]
     fn max(self, other: Self) -> Self {
         Self(self.0.max(other.0))
+    }
+
+    #[inline(always)]
+    fn min(self, other: Self) -> Self {
+        Self(self.0.min(other.0))
     }
 
     #[inline(always)]
@@ -68,9 +73,9 @@ impl Lanes for Four {
     }
 
     #[inline(always)]
-    unsafe fn fetch(nodes: &[Vec3A], index: &[u32; 16], part: usize) -> [Self; 3] {
-        // SAFETY: the caller's indices are below the number of nodes.
-        let node = |k: usize| unsafe { *nodes.get_unchecked(index[4 * part + k] as usize) };
+    unsafe fn fetch(nodes: &[Vec3A], offset: &[u32; 16], part: usize) -> [Self; 3] {
+        // SAFETY: the caller's offsets are those of nodes.
+        let node = |k: usize| unsafe { *nodes.as_ptr().byte_add(offset[4 * part + k] as usize) };
         columns(node(0), node(1), node(2), node(3))
     }
 
