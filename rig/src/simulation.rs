@@ -15,8 +15,8 @@ use crate::tissue::{Drive, Layered, Numbering, Springs, Tissue, cheeks};
 use crate::tongue::Tongue;
 use crate::{Control, Controls, Head, KeyFrame, TissueModel, jaw};
 
-/// Length of a step in ticks: 320 steps a second.
-pub const STEP_TICKS: i64 = 150;
+/// Length of a step in ticks: 400 steps a second.
+pub const STEP_TICKS: i64 = 120;
 /// The same in seconds.
 pub(crate) const STEP_S: f32 = STEP_TICKS as f32 / TICK_RATE as f32;
 /// How fast components follow their controls (critically damped), 1/s.

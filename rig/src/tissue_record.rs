@@ -36,8 +36,8 @@ pub struct TissueRecord {
 impl TissueRecord {
     /// The mass that stiffnesses per mass are meant at, g; reasoned at [`Self::vertex_mass_g`].
     pub const MASS_G: f32 = 0.07;
-    /// Lightest mass that the default step (480 Hz) is stable with: springs per mass grow as mass falls.
-    pub const MASS_MIN_G: f32 = 0.7 * Self::MASS_G;
+    /// Lightest mass that the default step is stable with: springs per mass grow as mass falls.
+    pub const MASS_MIN_G: f32 = 0.8 * Self::MASS_G;
     /// Heaviest: beyond it skin would lag behind speech visibly.
     pub const MASS_MAX_G: f32 = 10.0 * Self::MASS_G;
 

@@ -48,17 +48,17 @@ fn told(settings: &[(Control, f32)]) -> Controls {
 #[test]
 fn left_alone_and_undamped_it_keeps_its_energy() {
     let smile = told(&[
-        (Control::ZygomaticusMajor, 0.15),
-        (Control::FrontalisInner, 0.15),
-        (Control::Jaw, 0.02),
+        (Control::ZygomaticusMajor, 0.1),
+        (Control::FrontalisInner, 0.1),
     ]);
-    // Let go of at once: the skin is where the muscles had it, they are at rest.
+    // Let go of at once, a second for it to spread over all modes: the skin is where the muscles had it, they are at rest.
     let mut let_go = settled(&mut free(), &smile, SECOND);
     let_go.state = Controls::default();
     let_go.state_rate = Controls::default();
     let mut simulation = free();
     simulation.set_damping(0.0);
     assert!(simulation.restore(&let_go));
+    settled(&mut simulation, &Controls::default(), SECOND);
     let mut means = Vec::new();
     for _ in 0..100 {
         let mut sum = 0.0;
@@ -143,34 +143,44 @@ fn sentence_at(step: usize) -> Option<Controls> {
     Some(rows.get(row)?.lerp(rows.get(row + 1)?, share))
 }
 
-#[test]
-fn a_sentence_does_not_depend_on_the_step() {
+/// The farthest that half the step moves a vertex during a sentence, mm, and how far the sentence moves any.
+fn by_half_the_step(lips: bool) -> (f32, f32) {
     let (mut whole, mut half) = (
         Simulation::new(Arc::clone(head())),
         Simulation::new(Arc::clone(head())),
     );
     half.set_substeps(2);
-    let (mut worst, mut step, mut sum, mut count) = (0.0_f32, 0, 0.0, 0);
-    let mut most = 0.0_f32;
+    for simulation in [&mut whole, &mut half] {
+        simulation.set_lip_contact(lips);
+    }
+    let (mut worst, mut most, mut step) = (0.0_f32, 0.0_f32, 0);
+    let rest = &head().skin.mesh.positions;
     while let Some(controls) = sentence_at(step) {
         let a = settled(&mut whole, &controls, 1);
         let b = settled(&mut half, &controls, 1);
-        if step % 4 == 0 {
-            for ((p, q), rest) in a.skin.iter().zip(&b.skin).zip(&head().skin.mesh.positions) {
+        for (i, (p, q)) in a.skin.iter().zip(&b.skin).enumerate() {
+            // The inside of the mouth lies on the teeth: what is seen is judged.
+            if head().skin.wet[i] < 0.5 {
                 worst = worst.max(p.distance(*q));
-                most = most.max(p.distance(*rest));
-                sum += f64::from(p.distance(*q));
-                count += 1;
+                most = most.max(p.distance(rest[i]));
             }
         }
         step += 1;
     }
-    let mean = sum / f64::from(count.max(1));
+    (worst, most)
+}
+
+#[test]
+fn a_sentence_does_not_depend_on_the_step() {
+    let (tissue, most) = by_half_the_step(false);
+    let (lips, _) = by_half_the_step(true);
     println!(
-        "half the step: {worst:.3} mm at most, {mean:.5} in the mean; the skin moved {most:.1} mm"
+        "half the step: {tissue:.3} mm, {lips:.3} mm where lips meet; the skin moved {most:.1} mm"
     );
     assert!(most > 8.0, "the sentence moves the face: {most} mm");
-    assert!(worst < 0.2, "half the step moves a vertex by {worst} mm");
+    assert!(tissue < 0.1, "half the step moves a vertex by {tissue} mm");
+    // Lips that close are stopped at the end of a step: a moment earlier or later is a step apart.
+    assert!(lips < 0.6, "half the step moves a lip by {lips} mm");
 }
 
 #[test]

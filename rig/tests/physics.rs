@@ -51,6 +51,8 @@ fn without_springs_to_the_muscles_no_contraction_moves_the_skin() {
         controls[Control::ProtrusionSuperior] = 1.0;
         controls[Control::ProtrusionInferior] = -1.0;
         let mut cut = Simulation::new(Arc::clone(head()));
+        // Contact settles the head by itself: what is asked for here is what the muscles do.
+        cut.set_contacts(false);
         cut.set_muscle_stiffness(0.0);
         let moved = farthest(&settled(&mut cut, &controls, 120));
         assert!(

@@ -54,8 +54,8 @@ pub struct Fps {
 }
 
 impl Fps {
-    /// The highest rate: the simulation steps at 480 a second, so more shows nothing new.
-    const HZ_MAX: u32 = 480;
+    /// The highest rate: the simulation steps at 400 a second, so more shows nothing new.
+    const HZ_MAX: u32 = 400;
 
     /// When frame `k` is due, in ticks of 48 kHz, rounded down.
     pub fn ticks(self, k: u64) -> i64 {

@@ -21,8 +21,8 @@ use super::time::{Flow, ns_from_ticks, seconds};
 
 /// How far the simulation runs ahead of what is heard: covers for a thread that is not let run.
 pub const LEAD_TICKS: i64 = TICK_RATE / 4;
-/// Ticks between key frames: 120 a second, of which linear interpolation shows nothing.
-pub const FRAME_TICKS: i64 = 400;
+/// Ticks between key frames: 100 a second, of which linear interpolation shows nothing.
+pub const FRAME_TICKS: i64 = 480;
 const _: () = assert!(FRAME_TICKS % STEP_TICKS == 0);
 /// Key frames that can be gone back to: a second, four times the lead.
 const KEPT: usize = 120;

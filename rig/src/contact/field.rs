@@ -59,7 +59,9 @@ impl Field {
                 let at = |v: u32| m.positions.get(v as usize).copied().unwrap_or_default();
                 m.triangles.iter().map(move |t| t.map(at))
             })
-            .filter(|t| t.iter().any(|p| p.x.abs() < HALF_WIDTH_MM))
+            .filter(|t| {
+                t.iter().any(|p| p.x < HALF_WIDTH_MM) && t.iter().any(|p| p.x > -HALF_WIDTH_MM)
+            })
             .collect();
         let heights = triangles.iter().flatten().map(|p| p.y * up);
         let bottom = heights.reduce(f32::min)? - CELL_MM;

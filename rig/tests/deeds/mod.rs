@@ -113,7 +113,7 @@ pub(crate) const DEEDS: [Deed; 31] = [
         "chin",
         [7.0, -63.0, 110.0],
         [0.0, 1.0, 0.0],
-        0.8,
+        0.7,
     ),
     (
         Muscle::FrontalisInner,

@@ -3,7 +3,7 @@
 use glam::Vec3A;
 
 use super::simd::MOST;
-use super::{BLEND, EASE, EDGE, SLACK, STOP, SpringPass, Springs, VOLUME};
+use super::{BLEND, EDGE, SLACK, STOP, SpringPass, Springs, VOLUME};
 use crate::Control;
 use crate::tissue::Drive;
 
@@ -66,8 +66,6 @@ fn edge(length: f64, rest: f64) -> f64 {
     let past = strain.abs() - near;
     let odd = near.powi(3) / (6.0 * blend) + 0.5 * past * (blend + past);
     let even = 0.5 * strain * strain;
-    let eased = 0.25 * (strain - f64::from(EASE)).max(0.0).powi(2);
-    let work = 0.5 * ((1.0 + slack) * even + (1.0 - slack) * odd.copysign(strain)) - eased
-        + torn * SpringPass::stress(strain);
-    f64::from(EDGE) * rest * rest * work
+    let work = 0.5 * ((1.0 + slack) * even + (1.0 - slack) * odd.copysign(strain));
+    f64::from(EDGE) * rest * rest * (work + torn * SpringPass::stress(strain))
 }

@@ -40,14 +40,12 @@ pub use simd::Isa;
 use simd::{Ground, Hold, Kick, Mesh};
 
 /// Damping per mass, 1/s: what lets skin lag less than 10 ms behind a fast lip, and still not ring.
-const DAMPING: f32 = 140.0;
+const DAMPING: f32 = 125.0;
 /// Share of its stiffness that a skin edge keeps when it is pressed together.
 const SLACK: f32 = 0.12;
 /// Strain within which it goes from the one to the other. A kink there would feed energy into the
 /// fastest modes, step by step: all edges are at it at rest.
 const BLEND: f32 = 0.1;
-/// Strain beyond which an edge eases to half its stiffness: Green's strain grows with the square.
-const EASE: f32 = 0.25;
 /// What the spring to the bone gains in its second phase, and where that begins: at a share of the
 /// tissue's depth over a least way, mm.
 const FIRM: f32 = 2_400.0;
@@ -160,7 +158,6 @@ impl Springs {
             edge: EDGE,
             slack: SLACK,
             blend: BLEND,
-            firm: EASE,
             bone: STOP,
             muscle: drive.muscle_stiffness,
             carry,

@@ -3,7 +3,7 @@
 use glam::{Vec3, Vec3A};
 
 use super::simd::{self, Ground, Isa, MOST, Mesh, Neighbour};
-use super::{BLEND, EASE, SLACK};
+use super::{BLEND, SLACK};
 use crate::tissue::Nodes;
 use crate::tissue::nodes::morton;
 
@@ -18,19 +18,15 @@ pub struct SpringPass {
 }
 
 impl SpringPass {
-    /// Slack, blend, and the strain beyond which an edge eases to half its stiffness: see
-    /// [`Self::stress`].
-    const LAW: [f32; 3] = [SLACK, BLEND, EASE];
-
-    /// What an edge pulls with, over its stiffness and its length, when it has this strain (Green's): the law that
-    /// the pass computes, here in f64.
+    /// What an edge pulls with, over its stiffness and its length, when it has this strain (Green's: half of what its
+    /// squared length has gained): the law that the pass computes, here in f64.
     #[must_use]
     pub fn stress(strain: f64) -> f64 {
-        let [slack, blend, firm] = Self::LAW.map(f64::from);
-        let strain = strain.min(f64::from(MOST));
+        let [slack, blend, most] = [SLACK, BLEND, MOST].map(f64::from);
+        let strain = strain.min(most);
         let (size, near) = (strain.abs(), strain.abs().min(blend));
         let odd = size - near + near * near / (2.0 * blend);
-        0.5 * ((1.0 + slack) * strain + (1.0 - slack) * odd) - 0.5 * (strain - firm).max(0.0)
+        0.5 * ((1.0 + slack) * strain + (1.0 - slack) * odd)
     }
 
     /// Of all edges of these triangles, mm, stretched by `stretch`; vertices are put in an order in which
@@ -88,7 +84,13 @@ impl SpringPass {
 
     /// Computes the forces.
     pub fn run(&mut self, isa: Isa) {
-        simd::stretch(isa, &self.mesh, &self.nodes, &mut self.force, Self::LAW);
+        simd::stretch(
+            isa,
+            &self.mesh,
+            &self.nodes,
+            &mut self.force,
+            [SLACK, BLEND],
+        );
     }
 
     /// The forces of the last run, over the edges' stiffness, mm.

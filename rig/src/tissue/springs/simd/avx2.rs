@@ -37,7 +37,7 @@ pub(super) fn drift(nodes: &mut Nodes, step_s: f32) {
 }
 
 #[target_feature(enable = "avx2,fma")]
-pub(super) fn stretch(mesh: &Mesh, nodes: &Nodes, force: &mut [Vec3A], law: [f32; 3]) {
+pub(super) fn stretch(mesh: &Mesh, nodes: &Nodes, force: &mut [Vec3A], law: [f32; 2]) {
     kernel::stretch::<Eight>(mesh, nodes, force, law);
 }
 
@@ -170,7 +170,7 @@ impl Lanes for Eight {
 
     #[inline(always)]
     unsafe fn fetch(nodes: &[Vec3A], offset: &[u32; 16], part: usize) -> [Self; 3] {
-        let (from, index) = (nodes.as_ptr(), &offset[8 * part..8 * part + 8]);
+        let (from, offset) = (nodes.as_ptr(), &offset[8 * part..8 * part + 8]);
         // SAFETY: the caller's offsets are those of nodes; a node is aligned to 16.
         columns(|k| unsafe { _mm_load_ps(from.byte_add(offset[k] as usize).cast()) })
     }

@@ -41,7 +41,7 @@ pub(super) fn drift(nodes: &mut Nodes, step_s: f32) {
 }
 
 #[target_feature(enable = "avx512f")]
-pub(super) fn stretch(mesh: &Mesh, nodes: &Nodes, force: &mut [Vec3A], law: [f32; 3]) {
+pub(super) fn stretch(mesh: &Mesh, nodes: &Nodes, force: &mut [Vec3A], law: [f32; 2]) {
     kernel::stretch::<Sixteen>(mesh, nodes, force, law);
 }
 

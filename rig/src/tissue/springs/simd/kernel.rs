@@ -20,8 +20,6 @@ pub(in crate::tissue::springs) struct Kick {
     pub slack: f32,
     /// Strain within which it goes from the one to the other.
     pub blend: f32,
-    /// Strain beyond which an edge eases to half its stiffness.
-    pub firm: f32,
     /// Stiffness of the bone.
     pub bone: f32,
     /// Scales the springs to muscles.
@@ -31,10 +29,6 @@ pub(in crate::tissue::springs) struct Kick {
     /// Bit k mod 128 is set when fibre k is away from rest.
     pub moved: u128,
 }
-
-/// Strain beyond which an edge answers with the same stress: twice its length. Else the force on one that is torn
-/// at would grow with the third power of its length, faster than any step can follow.
-pub(in crate::tissue::springs) const MOST: f32 = 1.5;
 
 const AXES: Range<usize> = 0..3;
 
@@ -52,31 +46,31 @@ fn square<L: Lanes>(v: [L; 3]) -> L {
     v[2].mul_add(v[2], v[1].mul_add(v[1], x))
 }
 
-/// How an edge answers to strain (Green's: half of what its squared length has gained, which needs no root):
-/// with its stiffness when stretched, half of that beyond `firm`, with `slack` of it pressed together, and a
-/// parabola round rest that joins the two without a kink.
+/// Strain beyond which the stress of an edge grows no more (its force still does, with its length): 1.3 times its
+/// length at rest. Without that, edges that are torn at would grow stiffer than the step can follow.
+pub(in crate::tissue::springs) const MOST: f32 = 0.35;
+
+/// How an edge answers to strain, Green's: half of what its squared length has gained, which needs no root. With its
+/// stiffness when stretched, with `slack` of it pressed together, and a parabola round rest that joins the two
+/// without a kink.
 #[derive(Clone, Copy)]
 struct Give<L> {
     even: L,
     odd: L,
     blend: L,
     curve: L,
-    firm: L,
-    ease: L,
     most: L,
 }
 
 impl<L: Lanes> Give<L> {
     #[inline(always)]
-    fn new(slack: f32, blend: f32, firm: f32) -> Self {
+    fn new([slack, blend]: [f32; 2]) -> Self {
         let odd = 0.5 * (1.0 - slack);
         Self {
             even: L::splat(0.5 * (1.0 + slack)),
             odd: L::splat(odd),
             blend: L::splat(blend),
             curve: L::splat(odd * 0.5 / blend),
-            firm: L::splat(firm),
-            ease: L::splat(-0.5),
             most: L::splat(MOST),
         }
     }
@@ -87,8 +81,6 @@ impl<L: Lanes> Give<L> {
         let size = strain.abs();
         let near = size.min(self.blend);
         let straight = size.mul_add(self.odd, strain.mul(self.even));
-        let past = strain.sub(self.firm).max(L::splat(0.0));
-        let straight = past.mul_add(self.ease, straight);
         // near * (near * curve - odd): the parabola instead of the straight part.
         near.mul_add(near.mul(self.curve).sub(self.odd), straight)
     }
@@ -120,7 +112,6 @@ unsafe fn edges<L: Lanes, const VOLUME: bool>(
             other[1].sub(own[1]),
             other[2].sub(own[2]),
         ];
-        // Half over the squared length at rest.
         let grown = L::load(&row.grown, part);
         let length = d[2].mul_add(d[2], d[1].mul(d[1]));
         let length = d[0].mul_add(d[0], length);
@@ -154,7 +145,7 @@ pub(super) fn kick<L: Lanes>(
     kick: &Kick,
 ) {
     let zero = L::splat(0.0);
-    let give = Give::new(kick.slack, kick.blend, kick.firm);
+    let give = Give::new([kick.slack, kick.blend]);
     let (edge, bone, muscle) = (
         L::splat(kick.edge),
         L::splat(kick.bone),
@@ -252,9 +243,8 @@ pub(super) fn drift<L: Lanes>(nodes: &mut Nodes, step_s: f32) {
 
 /// See [`super::stretch`]; sizes are checked there.
 #[inline(always)]
-pub(super) fn stretch<L: Lanes>(mesh: &Mesh, nodes: &Nodes, force: &mut [Vec3A], law: [f32; 3]) {
-    let [slack, blend, firm] = law;
-    let give = Give::new(slack, blend, firm);
+pub(super) fn stretch<L: Lanes>(mesh: &Mesh, nodes: &Nodes, force: &mut [Vec3A], law: [f32; 2]) {
+    let give = Give::new(law);
     for (b, block) in mesh.blocks.iter().enumerate() {
         for part in 0..BLOCK / L::N {
             let first = b * BLOCK + part * L::N;

@@ -203,11 +203,7 @@ impl Mesh {
                     (Some(n), _) => {
                         row.offset[l] = n.node * NODE;
                         let none = n.rest_mm < 0.0;
-                        row.grown[l] = if none {
-                            -1.0
-                        } else {
-                            0.5 / (n.rest_mm * n.rest_mm)
-                        };
+                        row.grown[l] = if none { -1.0 } else { 0.5 / n.rest_mm.powi(2) };
                         corner[l] = n.corner;
                     }
                     // Past its last neighbour: no area with that one again, or no way to itself.

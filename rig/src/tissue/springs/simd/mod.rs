@@ -117,11 +117,11 @@ pub(super) fn drift(isa: Isa, nodes: &mut Nodes, step_s: f32) {
     on!(isa, drift(nodes, step_s));
 }
 
-/// Forces of the edges alone, for measuring; `law` is slack, blend and firm of [`Kick`].
+/// Forces of the edges alone, for measuring; `law` is slack and blend of [`Kick`].
 ///
 /// # Panics
 /// When `nodes` or `force` are not of the size that `mesh` was made for.
-pub(super) fn stretch(isa: Isa, mesh: &Mesh, nodes: &Nodes, force: &mut [Vec3A], law: [f32; 3]) {
+pub(super) fn stretch(isa: Isa, mesh: &Mesh, nodes: &Nodes, force: &mut [Vec3A], law: [f32; 2]) {
     mesh.check(nodes, mesh.places(), mesh.gradients());
     assert_eq!(force.len(), nodes.place.len(), "one force per node");
     on!(isa, stretch(mesh, nodes, force, law));
