@@ -14,6 +14,10 @@ use proptest::prelude::*;
 /// Long enough for muscles to have followed their controls.
 const STEPS: usize = 120;
 
+#[allow(
+    clippy::unwrap_used,
+    reason = "a helper of tests; clippy sees only test functions"
+)]
 fn head() -> Arc<Head> {
     Arc::new(Head::reference().unwrap())
 }
