@@ -1,3 +1,5 @@
+//! The library, scripts and blending, as users meet them.
+
 use proptest::prelude::*;
 
 use super::*;
