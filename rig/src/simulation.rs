@@ -11,7 +11,7 @@ use crate::contact::Contact;
 use crate::follow::Follow;
 use crate::key_frame::TICK_RATE;
 use crate::muscle::Muscles;
-use crate::tissue::{Drive, Layered, Numbering, Springs, Tissue, cheeks};
+use crate::tissue::{Drive, Layered, Numbering, Springs, Tissue, bone_depth, cheeks};
 use crate::tongue::Tongue;
 use crate::{Control, Controls, Head, KeyFrame, TissueModel, jaw};
 
@@ -175,8 +175,10 @@ impl Simulation {
     #[must_use]
     pub fn cheek_volumes(&self) -> [f32; 2] {
         let (jaw, nodes) = (self.state[Control::Jaw], self.model.tissue().skin());
-        let mandible = self.head.mandible(jaw);
-        cheeks(&self.head, &self.numbering).map(|c| c.volume(nodes, &mandible, jaw))
+        let rest = self.numbering.of(&self.head.skin.mesh.positions);
+        let depth = bone_depth(&self.head, &rest[..self.numbering.movable]);
+        cheeks(&self.head, &self.numbering, &depth)
+            .map(|cheek| cheek.volume(nodes, &self.mandible, jaw))
     }
 
     /// Bytes that a step reads and writes, but for muscles and contact.
@@ -242,7 +244,7 @@ impl Simulation {
             frame.velocity.resize(skin.len(), Vec3::ZERO);
         }
         let nodes = self.model.tissue().skin();
-        for (i, &v) in self.moving() {
+        for (i, &v) in self.numbering.moving_vertices().iter().enumerate() {
             frame.skin[v as usize] = nodes.place[i].into();
             frame.velocity[v as usize] = nodes.velocity[i].into();
         }
@@ -271,8 +273,7 @@ impl Simulation {
         self.pose();
         let tissue = self.model.tissue_mut();
         let nodes = tissue.skin_mut();
-        let moving = &self.numbering.vertices[..self.numbering.movable];
-        for (i, &v) in moving.iter().enumerate() {
+        for (i, &v) in self.numbering.moving_vertices().iter().enumerate() {
             nodes.place[i] = frame.skin[v as usize].into();
             nodes.velocity[i] = frame.velocity[v as usize].into();
         }
@@ -286,13 +287,6 @@ impl Simulation {
             }
         }
         true
-    }
-
-    /// The nodes that move, each with its skin vertex.
-    fn moving(&self) -> impl Iterator<Item = (usize, &u32)> {
-        self.numbering.vertices[..self.numbering.movable]
-            .iter()
-            .enumerate()
     }
 
     /// Puts mandible and fibres where the state has them.

@@ -40,7 +40,7 @@ pub(super) fn skin(head: &Head) -> Result<(), HeadError> {
             joined[a as usize] = true;
         }
     }
-    let numbering = Numbering::new(head);
+    let numbering = Numbering::plain(head);
     let alone = (0..mesh.positions.len() as u32)
         .find(|&v| !joined[v as usize] && numbering.moving(v).is_some());
     match alone {

@@ -118,7 +118,7 @@ pub(super) fn bone_stiffness(p: Vec3, side: Side) -> f32 {
 }
 
 /// Which way the bone under each of these places of the skin lies, and how deep, mm.
-pub(super) fn bone_depth(head: &Head, places: &[Vec3]) -> Vec<(Vec3, f32)> {
+pub(crate) fn bone_depth(head: &Head, places: &[Vec3]) -> Vec<(Vec3, f32)> {
     let bones = ["skull", "mandible"].into_iter();
     let space = Space::new(bones.filter_map(|name| head.part(name)).map(|p| &p.mesh));
     places.iter().map(|p| space.under(*p)).collect()

@@ -6,9 +6,9 @@
 //! its gradient and so its energy are exact; the default model adds the gradient's part on the skin to its pass over
 //! the springs. Any model can be measured by it.
 
-use glam::{Affine3A, Vec3A};
+use glam::{Affine3A, Vec3, Vec3A};
 
-use super::anatomy::{bone_depth, cheek, mandible_share, sides};
+use super::anatomy::{cheek, mandible_share, sides};
 use super::{Nodes, Numbering};
 use crate::Head;
 
@@ -133,8 +133,10 @@ impl Cheek {
     }
 }
 
-/// The left and the right cheek of a head.
-pub(crate) fn cheeks(head: &Head, numbering: &Numbering) -> [Cheek; 2] {
+/// The left and the right cheek of a head, whose bone lies under the nodes that move as [`bone_depth`] has it.
+///
+/// [`bone_depth`]: super::anatomy::bone_depth
+pub(crate) fn cheeks(head: &Head, numbering: &Numbering, depth: &[(Vec3, f32)]) -> [Cheek; 2] {
     let rest = numbering.of(&head.skin.mesh.positions);
     let reference = numbering.of(&head.skin.reference);
     let side = numbering.of(&sides(head));
@@ -142,7 +144,6 @@ pub(crate) fn cheeks(head: &Head, numbering: &Numbering) -> [Cheek; 2] {
         let p = reference[node as usize];
         (node as usize) < numbering.movable && (p.x > 0.0) == left && cheek(p)
     };
-    let depth = bone_depth(head, &rest[..numbering.movable]);
     let feet: Vec<Foot> = (0..)
         .zip(&rest)
         .map(|(node, &place)| {

@@ -44,10 +44,7 @@ pub(super) fn attachments(head: &Head, numbering: &Numbering) -> Vec<Attachment>
     let side = numbering.of(&sides(head));
     let mut lid = vec![0.0_f32; head.skin.mesh.positions.len()];
     for margin in &head.lids {
-        // One that is not there is refused by name elsewhere.
-        if let Some(lid) = lid.get_mut(margin.vertex as usize) {
-            *lid = margin.hold;
-        }
+        lid[margin.vertex as usize] = margin.hold;
     }
     let lid = numbering.of(&lid);
     let (count, fibres) = (numbering.movable, head.fibres.len());

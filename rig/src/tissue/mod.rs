@@ -24,6 +24,7 @@ use std::fmt::Debug;
 
 use glam::Affine3A;
 
+pub(crate) use anatomy::bone_depth;
 pub(crate) use cheeks::cheeks;
 pub(crate) use layered::Layered;
 pub(crate) use nodes::{Nodes, Numbering};

@@ -47,12 +47,17 @@ impl Numbering {
     /// Of a head, in an order that is good for work done on many nodes side by side: within a neighbourhood those come
     /// together that as many fibres hold.
     pub(crate) fn new(head: &Head) -> Self {
-        let plain = Self::ordered(head, |_| 0);
+        let plain = Self::plain(head);
         let mut holds = vec![0_u32; head.skin.mesh.positions.len()];
         for hold in attachments(head, &plain) {
             holds[plain.vertices[hold.vertex as usize] as usize] += 1;
         }
         Self::ordered(head, |v| holds[v as usize])
+    }
+
+    /// Of a head of which only the skin is known to be sound: the same nodes, in an order that asks for no more.
+    pub(crate) fn plain(head: &Head) -> Self {
+        Self::ordered(head, |_| 0)
     }
 
     fn ordered(head: &Head, holds: impl Fn(u32) -> u32) -> Self {
@@ -104,6 +109,11 @@ impl Numbering {
     pub(crate) fn moving(&self, skin_vertex: u32) -> Option<u32> {
         let number = self.number[skin_vertex as usize];
         ((number as usize) < self.movable).then_some(number)
+    }
+
+    /// The skin vertices of the nodes that move.
+    pub(crate) fn moving_vertices(&self) -> &[u32] {
+        &self.vertices[..self.movable]
     }
 
     /// What the nodes have of a list with one entry per skin vertex.

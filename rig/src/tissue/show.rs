@@ -5,10 +5,10 @@
 use glam::Vec3;
 
 use super::Numbering;
-use super::anatomy::{mandible_share, sides};
+use super::anatomy::{bone_depth, mandible_share, sides};
 use super::holds::attachments;
 use crate::anatomy::{SpringKind, SpringLine};
-use crate::muscle::{Muscles, Space, carried};
+use crate::muscle::{Muscles, carried};
 use crate::{Control, Head, KeyFrame};
 
 /// All springs of `head` in the pose of `frame`, but those to the lids.
@@ -39,10 +39,8 @@ pub(crate) fn spring_lines(head: &Head, frame: &KeyFrame) -> Vec<SpringLine> {
     muscles.contract(head, &frame.state, &mandible);
     let reference = numbering.of(&head.skin.reference);
     let side = numbering.of(&sides(head));
-    let bones = ["skull", "mandible"].into_iter();
-    let space = Space::new(bones.filter_map(|name| head.part(name)).map(|p| &p.mesh));
-    for i in 0..numbering.movable {
-        let (inwards, depth) = space.under(rest[i]);
+    let depth = bone_depth(head, &rest[..numbering.movable]);
+    for (i, (inwards, depth)) in depth.into_iter().enumerate() {
         let bone = rest[i] + inwards * depth;
         let share = mandible_share(reference[i], side[i]);
         let at = carried(bone, share, &mandible);

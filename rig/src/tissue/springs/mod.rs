@@ -32,7 +32,7 @@ use super::anatomy::{EDGE, bone_depth, bone_stiffness, mandible_share, sides};
 use super::cheeks::{Cheek, cheeks};
 use super::holds::{Attachment, attachments};
 use super::{Drive, Nodes, Numbering, Tissue};
-use crate::{Control, Head, TissueRecord};
+use crate::{Control, Head};
 use lids::Lids;
 pub use pass::SpringPass;
 use places::Places;
@@ -116,7 +116,7 @@ impl Springs {
                 }
             })
             .collect();
-        let cheeks = cheeks(head, numbering);
+        let cheeks = cheeks(head, numbering, &depth);
         let mut counted: Vec<[u32; 3]> = cheeks
             .iter()
             .flat_map(|c| c.triangles.iter().copied())
@@ -138,7 +138,7 @@ impl Springs {
                 cheek.nodes.iter().filter_map(of).collect()
             }),
             springs: numbering.edges.len() + ground.len() + holds.len() + lids.len(),
-            per_mass: TissueRecord::default().vertex_mass_g / head.tissue.vertex_mass_g,
+            per_mass: head.tissue.stiffness_scale(),
             nodes,
             mesh,
             places,
