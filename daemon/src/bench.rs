@@ -14,7 +14,7 @@ use mouthpiece_render::{FRAMES_IN_FLIGHT, Gpu, Offscreen};
 use mouthpiece_rig::{KeyFrame, STEP_TICKS, TICK_RATE};
 use serde_json::{Map, Value, json};
 
-use crate::cli::{BenchArgs, Fps, LookArgs, Size, TierArg, ViewArg};
+use crate::cli::{BenchArgs, Fps, LookArgs, SceneArgs, Size, TierArg, ViewArg};
 use crate::export::Job;
 use crate::input::Utterance;
 use crate::media::mp4::Mp4Sink;
@@ -53,7 +53,7 @@ pub fn run(args: &BenchArgs) -> anyhow::Result<()> {
         (first.width, first.height),
         TierArg::Medium.into(),
     )?
-    .render(&instant.frame, &look(TierArg::Medium).view())?;
+    .render(&instant.frame, &look(TierArg::Medium).view()?)?;
     let first_picture_ms = started.elapsed().as_secs_f64() * 1e3;
 
     let ticks = utterance.ticks;
@@ -108,7 +108,7 @@ fn render(cast: &Cast, gpu: &Gpu, performance: &mut Performance) -> anyhow::Resu
         .collect();
     let mut tiers = Map::new();
     for tier in [TierArg::Low, TierArg::Medium, TierArg::High] {
-        let view = look(tier).view();
+        let view = look(tier).view()?;
         let mut sizes = Map::new();
         for size in SIZES {
             let mut offscreen =
@@ -154,7 +154,7 @@ fn export(cast: &Cast, utterance: Utterance) -> anyhow::Result<Value> {
 fn look(tier: TierArg) -> LookArgs {
     LookArgs {
         tier,
-        background: None,
+        scene: SceneArgs::default(),
         view: ViewArg::Front,
     }
 }

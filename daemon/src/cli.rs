@@ -4,16 +4,18 @@
 //! need reading (sizes, rates, colours) are in [`values`].
 
 mod head;
+mod scene;
 mod values;
 
 use std::path::PathBuf;
 
 use clap::{ArgAction, Args, Parser, Subcommand, ValueEnum};
-use mouthpiece_render::{Background, Camera, Tier, View};
+use mouthpiece_render::{Camera, Tier, View};
 use mouthpiece_rig::{Anatomy, TissueModel};
 
 pub use head::{CalibrateArgs, FitArgs, HeadCommand, InfoArgs, LandmarksArgs};
-pub use values::{Fps, Rgb, Size};
+pub use scene::{BackgroundArg, SceneArgs};
+pub use values::{Fps, Size};
 
 /// A real-time, speech-driven talking head: phoneme labels and sound in, a speaking face out.
 #[derive(Debug, Parser)]
@@ -91,11 +93,10 @@ pub struct StageArgs {
     #[arg(long, value_name = "WxH", default_value = "720x720")]
     pub size: Size,
     /// Quality of the picture
-    #[arg(long, value_enum, default_value_t = TierArg::Medium)]
-    pub tier: TierArg,
-    /// Colour behind the head, #rrggbb
-    #[arg(long, value_name = "COLOUR")]
-    pub background: Option<Rgb>,
+    #[arg(long, value_enum, default_value_t = LiveTierArg::Auto)]
+    pub tier: LiveTierArg,
+    #[command(flatten)]
+    pub scene: SceneArgs,
     /// Seed of the blinks and glances of an idle face
     #[arg(long, value_name = "N", default_value_t = 1)]
     pub seed: u64,
@@ -208,9 +209,8 @@ pub struct LookArgs {
     /// Quality of the picture
     #[arg(long, value_enum, default_value_t = TierArg::Medium)]
     pub tier: TierArg,
-    /// Colour behind the head, #rrggbb
-    #[arg(long, value_name = "COLOUR")]
-    pub background: Option<Rgb>,
+    #[command(flatten)]
+    pub scene: SceneArgs,
     /// Where the camera stands
     #[arg(long, value_enum, default_value_t = ViewArg::Front)]
     pub view: ViewArg,
@@ -351,6 +351,28 @@ pub enum TierArg {
     High,
 }
 
+/// Quality of a live picture.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub enum LiveTierArg {
+    /// The best that this machine draws in time, found while it runs
+    Auto,
+    Low,
+    Medium,
+    High,
+}
+
+impl LiveTierArg {
+    /// The tier, none where it is to be found.
+    pub fn fixed(self) -> Option<Tier> {
+        match self {
+            Self::Auto => None,
+            Self::Low => Some(Tier::Low),
+            Self::Medium => Some(Tier::Medium),
+            Self::High => Some(Tier::High),
+        }
+    }
+}
+
 /// Where the camera stands.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
 pub enum ViewArg {
@@ -409,20 +431,17 @@ impl From<TierArg> for Tier {
 }
 
 impl LookArgs {
-    /// How the renderer is to look at the head.
-    pub fn view(&self) -> View {
-        let view = View::default();
-        View {
+    /// How the renderer is to look at the head. Reads the files that are named.
+    pub fn view(&self) -> anyhow::Result<View> {
+        let view = self.scene.view()?;
+        Ok(View {
             camera: match self.view {
                 ViewArg::Front => Camera::Front,
                 ViewArg::Side => Camera::Side,
                 ViewArg::ThreeQuarter => Camera::ThreeQuarter,
             },
-            background: self
-                .background
-                .map_or(view.background, |Rgb(c)| Background::Plain(c)),
             ..view
-        }
+        })
     }
 }
 

@@ -15,7 +15,7 @@ use anyhow::Context as _;
 use indicatif::{ProgressBar, ProgressStyle};
 use mouthpiece_render::{FRAMES_IN_FLIGHT, Gpu, Offscreen};
 
-use crate::cli::{ExportArgs, Fps, LookArgs, Size, Usage};
+use crate::cli::{BackgroundArg, ExportArgs, Fps, LookArgs, Size, Usage};
 use crate::input::Utterance;
 use crate::interrupt;
 use crate::media::ffmpeg::FfmpegSink;
@@ -39,6 +39,7 @@ pub struct Job {
 
 /// Runs the command.
 pub fn run(args: &ExportArgs) -> anyhow::Result<()> {
+    opaque_or_kept(args)?;
     let job = Job {
         utterance: Utterance::load(&args.input)?,
         cast: Cast::load(&args.cast)?,
@@ -104,7 +105,7 @@ impl Job {
         let gpu = Gpu::headless()?;
         let size = (clip.width, clip.height);
         let mut offscreen = Offscreen::new(&gpu, &cast.head, size, self.look.tier.into())?;
-        let view = self.look.view();
+        let view = self.look.view()?;
         let mut encoder = Encoder::start(sink)?;
 
         let mut next = Some(());
@@ -137,6 +138,20 @@ impl Job {
         interrupt::check()?;
         sink.finish()
     }
+}
+
+/// What shows through must go where it can be kept.
+fn opaque_or_kept(args: &ExportArgs) -> anyhow::Result<()> {
+    let name = args.output.to_string_lossy();
+    let kept = name == "-" || name.ends_with('/') || name.ends_with(".png") || args.output.is_dir();
+    if args.look.scene.background == Some(BackgroundArg::Transparent) && (!kept || args.via_ffmpeg)
+    {
+        return Err(Usage(format!(
+            "--background transparent: {name} would not keep it; write out-%05d.png, a folder/ or - (raw RGBA)"
+        ))
+        .into());
+    }
+    Ok(())
 }
 
 /// Where frames go, by the name of the output.

@@ -35,7 +35,7 @@ pub fn run(args: &StillArgs) -> anyhow::Result<()> {
     };
     let gpu = Gpu::headless()?;
     let size = (args.size.width, args.size.height);
-    let mut view = args.look.view();
+    let mut view = args.look.view()?;
     let head = match args.show.anatomy() {
         None => Arc::clone(&cast.head),
         Some(what) => {

@@ -1,9 +1,8 @@
 //! What the shaders read beside vertices, bound once: the shadow map, and the maps of skin, eyes and hair.
 
-use mouthpiece_rig::Head;
-
 use crate::gpu::Gpu;
 use crate::maps::Maps;
+use crate::picture::Picture;
 use crate::pipelines::Layouts;
 use crate::targets::{DEPTH, texture};
 use crate::tier::Detail;
@@ -17,20 +16,21 @@ pub(crate) struct MapGroups {
     pub(crate) hair: wgpu::BindGroup,
 }
 
-/// Paints the maps of `head` and puts them on the card.
-pub(crate) fn maps(gpu: &Gpu, layouts: &Layouts, head: &Head, detail: &Detail) -> MapGroups {
-    let painted = Maps::paint(head, detail);
+/// Puts painted maps on the card.
+pub(crate) fn maps(gpu: &Gpu, layouts: &Layouts, painted: Maps, detail: &Detail) -> MapGroups {
     let eye = upload::image(gpu, "eye", painted.eye);
     let hair = upload::image(gpu, "hair", painted.hair);
     let colour = upload::image(gpu, "skin colour", painted.skin.colour);
-    let fine = upload::image(gpu, "skin detail", painted.skin.detail);
+    let mask = upload::image(gpu, "skin mask", painted.skin.mask);
+    let wrinkles = upload::image(gpu, "skin wrinkles", painted.skin.wrinkles);
+    let grain = upload::image(gpu, "skin grain", painted.skin.grain);
     // Never in software: Mesa's rasteriser was seen to take minutes over one anisotropic frame.
     let anisotropy = if gpu.is_software() {
         1
     } else {
         detail.anisotropy
     };
-    let sampler = gpu.device().create_sampler(&wgpu::SamplerDescriptor {
+    let clamped = wgpu::SamplerDescriptor {
         label: Some("maps"),
         mag_filter: wgpu::FilterMode::Linear,
         min_filter: wgpu::FilterMode::Linear,
@@ -42,6 +42,13 @@ pub(crate) fn maps(gpu: &Gpu, layouts: &Layouts, head: &Head, detail: &Detail) -
         },
         anisotropy_clamp: anisotropy,
         ..Default::default()
+    };
+    let sampler = gpu.device().create_sampler(&clamped);
+    let tiling = gpu.device().create_sampler(&wgpu::SamplerDescriptor {
+        label: Some("tile"),
+        address_mode_u: wgpu::AddressMode::Repeat,
+        address_mode_v: wgpu::AddressMode::Repeat,
+        ..clamped
     });
     let bound = |first, second| {
         let view = wgpu::BindingResource::TextureView;
@@ -56,10 +63,36 @@ pub(crate) fn maps(gpu: &Gpu, layouts: &Layouts, head: &Head, detail: &Detail) -
         )
     };
     MapGroups {
-        skin: bound(&colour, &fine),
+        skin: group(
+            gpu.device(),
+            &layouts.skin,
+            &[
+                wgpu::BindingResource::Sampler(&sampler),
+                wgpu::BindingResource::TextureView(&colour),
+                wgpu::BindingResource::TextureView(&mask),
+                wgpu::BindingResource::TextureView(&wrinkles),
+                wgpu::BindingResource::TextureView(&grain),
+                wgpu::BindingResource::Sampler(&tiling),
+            ],
+        ),
         eye: bound(&eye, &eye),
         hair: bound(&hair, &hair),
     }
+}
+
+/// A user's picture, bound as a material's maps are.
+pub(crate) fn picture(gpu: &Gpu, layouts: &Layouts, picture: &Picture) -> wgpu::BindGroup {
+    let view = upload::image(gpu, "backdrop", picture.premultiplied());
+    let sampler = gpu.device().create_sampler(&wgpu::SamplerDescriptor {
+        label: Some("backdrop"),
+        mag_filter: wgpu::FilterMode::Linear,
+        min_filter: wgpu::FilterMode::Linear,
+        mipmap_filter: wgpu::MipmapFilterMode::Nearest,
+        ..Default::default()
+    });
+    let view = wgpu::BindingResource::TextureView(&view);
+    let resources = [wgpu::BindingResource::Sampler(&sampler), view.clone(), view];
+    group(gpu.device(), &layouts.maps, &resources)
 }
 
 /// The key lamp's shadow map, to be drawn to, and as the shaders read it.

@@ -3,6 +3,7 @@
 use mouthpiece_rig::SubdivisionError;
 use thiserror::Error;
 
+use crate::gpu::GpuError;
 use crate::shader::ShaderError;
 
 /// Why a picture could not be drawn.
@@ -44,6 +45,9 @@ pub enum RenderError {
     /// The driver was reset or the card is gone.
     #[error("the graphics device was lost: open it again")]
     DeviceLost,
+    /// There is no opening it again.
+    #[error(transparent)]
+    Gpu(#[from] GpuError),
     /// The picture could not be read back.
     #[error("the picture could not be read back from the graphics adapter: {0}")]
     Readback(String),

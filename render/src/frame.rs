@@ -4,6 +4,7 @@ use glam::{Mat4, Vec3, Vec4};
 use mouthpiece_rig::{Body, Head, KeyFrame};
 
 use crate::gpu_data::Frame;
+use crate::maps::zones;
 use crate::openings::Open;
 use crate::studio::{Lamp, Studio};
 use crate::view::{Background, Extent, Shown, View, srgb};
@@ -40,7 +41,7 @@ pub(crate) fn data(
         Shown::Anatomy => &BARE,
     };
     let framing = extent.frame(view.camera, size);
-    let studio = Studio::portrait(view.camera.yaw_rad());
+    let studio = Studio::portrait(view.camera.yaw_rad(), &view.environment);
     let bodies = pose.bodies(&key_frame.state).map(Mat4::from);
     let mut body_rows = [Mat4::IDENTITY.to_cols_array_2d(); 8];
     for (row, body) in body_rows.iter_mut().zip(bodies) {
@@ -48,10 +49,13 @@ pub(crate) fn data(
     }
     let direction = |lamp: &Lamp| lamp.direction.extend(lamp.half_angle).to_array();
     let colour = |lamp: &Lamp| lamp.colour.extend(0.0).to_array();
-    let (middle, corner) = match view.background {
-        Background::Plain(c) => (srgb(c), srgb(c)),
-        Background::Studio(c) => (srgb(c) * 1.10, srgb(c) * 0.58),
+    let (middle, corner, down) = match &view.background {
+        Background::Plain(c) => (srgb(*c), srgb(*c), 0.0),
+        Background::Studio(c) => (srgb(*c) * 1.10, srgb(*c) * 0.58, 0.0),
+        Background::Gradient { top, bottom } => (srgb(*top), srgb(*bottom), 1.0),
+        Background::Picture(_) | Background::Transparent => (Vec3::ZERO, Vec3::ZERO, 0.0),
     };
+    let cover = f32::from(u8::from(view.background != Background::Transparent));
     let (width, height) = (size.0 as f32, size.1 as f32);
     Frame {
         clip_from_world: framing.clip_from_world.to_cols_array_2d(),
@@ -66,7 +70,7 @@ pub(crate) fn data(
         key_colour: colour(&studio.key),
         fill_colour: colour(&studio.fill),
         rim_colour: colour(&studio.rim),
-        ambient: studio.ambient.map(|row| row.to_array()),
+        ambient: studio.ambient.rows(),
         mouth: open.mouth.to_array(),
         mouth_height: [open.mouth_half_height, 0.0, 0.0, 0.0],
         eyeballs: pose
@@ -76,9 +80,14 @@ pub(crate) fn data(
         lids_at_rest: open.lids_at_rest.map(|lid| lid.to_array()),
         backdrop: [
             middle.extend(width / height).to_array(),
-            corner.extend(0.0).to_array(),
+            corner.extend(down).to_array(),
         ],
-        picture: [width, height, FLASH_SHARE, 0.0],
+        picture: [width, height, FLASH_SHARE, cover],
+        wrinkled: zones::wrinkled(&key_frame.state),
+        toward_camera: (framing.eye - extent.centre())
+            .normalize_or(Vec3::Z)
+            .extend(0.0)
+            .to_array(),
     }
 }
 

@@ -112,7 +112,7 @@ impl Gpu {
         let info = adapter.get_info();
         let (device, queue) = pollster::block_on(adapter.request_device(&wgpu::DeviceDescriptor {
             label: Some("mouthpiece"),
-            required_limits: wgpu::Limits::downlevel_defaults().using_resolution(adapter.limits()),
+            required_limits: limits(&adapter.limits()),
             ..Default::default()
         }))
         .map_err(|source| GpuError::Device {
@@ -133,11 +133,11 @@ impl Gpu {
         let lost = Arc::new(AtomicBool::new(false));
         let flag = Arc::clone(&lost);
         device.set_device_lost_callback(move |reason, message| {
-            // `Destroyed` is our own drop, not a loss.
+            // Destroying it is our own doing, and no news.
             if reason != wgpu::DeviceLostReason::Destroyed {
-                tracing::error!(?reason, message, "the graphics device was lost");
-                flag.store(true, Ordering::Release);
+                tracing::warn!(?reason, message, "the graphics device was lost");
             }
+            flag.store(true, Ordering::Release);
         });
         let refused = Arc::new(Mutex::new(None));
         let first = Arc::clone(&refused);
@@ -224,6 +224,17 @@ impl Gpu {
             tracing::info!(wanted, "multisampling is not offered: edges will be jagged");
             1
         }
+    }
+}
+
+/// What is asked of an adapter: WebGPU's downlevel limits, those of WebGL 2 where it has not even these (we compute
+/// nothing and store nothing, so they do), and whatever size of picture it can.
+fn limits(offered: &wgpu::Limits) -> wgpu::Limits {
+    let downlevel = wgpu::Limits::downlevel_defaults();
+    if downlevel.check_limits(offered) {
+        downlevel.using_resolution(offered.clone())
+    } else {
+        wgpu::Limits::downlevel_webgl2_defaults().using_resolution(offered.clone())
     }
 }
 

@@ -20,7 +20,7 @@ pub(crate) struct Frame {
     pub(crate) key_colour: [f32; 4],
     pub(crate) fill_colour: [f32; 4],
     pub(crate) rim_colour: [f32; 4],
-    pub(crate) ambient: [[f32; 4]; 3],
+    pub(crate) ambient: [[f32; 4]; 7],
     pub(crate) mouth: [f32; 4],
     pub(crate) mouth_height: [f32; 4],
     pub(crate) eyeballs: [[f32; 4]; 2],
@@ -28,6 +28,8 @@ pub(crate) struct Frame {
     pub(crate) lids_at_rest: [[f32; 4]; 4],
     pub(crate) backdrop: [[f32; 4]; 2],
     pub(crate) picture: [f32; 4],
+    pub(crate) wrinkled: [[f32; 4]; 4],
+    pub(crate) toward_camera: [f32; 4],
 }
 
 /// The part of a skin vertex that moves: head's frame, mm.
@@ -36,6 +38,8 @@ pub(crate) struct Frame {
 pub(crate) struct SkinMoving {
     pub(crate) position: [f32; 3],
     pub(crate) normal: [f32; 3],
+    /// What a fold leaves of the light from around, how convex it is, unused twice; 255 is 1.
+    pub(crate) bend: [u8; 4],
 }
 
 /// The part of a skin vertex that stays.
@@ -45,6 +49,10 @@ pub(crate) struct SkinStill {
     pub(crate) uv: [f32; 2],
     /// Share of the skull, vermilion, wet, occlusion; 255 is 1.
     pub(crate) shares: [u8; 4],
+    /// Place on the tile of the fine structure.
+    pub(crate) grain: [f32; 2],
+    /// Shares of the zones of both layers of wrinkles (see maps/zones.rs); 255 is 1.
+    pub(crate) zones: [[u8; 4]; 2],
 }
 
 /// A vertex of a part.
@@ -63,13 +71,15 @@ pub(crate) struct PartVertex {
 pub(crate) const SKIN_MOVING: wgpu::VertexBufferLayout<'static> = wgpu::VertexBufferLayout {
     array_stride: size_of::<SkinMoving>() as u64,
     step_mode: wgpu::VertexStepMode::Vertex,
-    attributes: &wgpu::vertex_attr_array![0 => Float32x3, 1 => Float32x3],
+    attributes: &wgpu::vertex_attr_array![0 => Float32x3, 1 => Float32x3, 7 => Unorm8x4],
 };
 
 pub(crate) const SKIN_STILL: wgpu::VertexBufferLayout<'static> = wgpu::VertexBufferLayout {
     array_stride: size_of::<SkinStill>() as u64,
     step_mode: wgpu::VertexStepMode::Vertex,
-    attributes: &wgpu::vertex_attr_array![2 => Float32x2, 3 => Unorm8x4],
+    attributes: &wgpu::vertex_attr_array![
+        2 => Float32x2, 3 => Unorm8x4, 4 => Float32x2, 5 => Unorm8x4, 6 => Unorm8x4
+    ],
 };
 
 pub(crate) const PART: wgpu::VertexBufferLayout<'static> = wgpu::VertexBufferLayout {

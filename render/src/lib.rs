@@ -7,7 +7,7 @@
 //! on the processor (`maps`), turns the head's meshes into buffers (`surface`, `geometry`) and its
 //! shaders into pipelines (`pipelines`). For each picture the skin's positions and normals and one uniform block
 //! (`gpu_data::Frame`) go up: where the bodies are, the camera ([`View`], [`Extent`]), the lamps
-//! (`studio`), and how far mouth and eyes are open (`openings`). Then two passes: depth as the key
+//! (`studio`) and the room's light (`environment`, `harmonics`), and how far mouth and eyes are open (`openings`). Then two passes: depth as the key
 //! lamp sees it, and the picture. Each shader ends in the film's curve, so the resolve of the
 //! multisampled picture averages finished colours.
 //!
@@ -17,14 +17,20 @@
 #![forbid(unsafe_code)]
 
 mod bindings;
+mod environment;
 mod error;
+mod folds;
 mod frame;
 mod geometry;
+mod governor;
 mod gpu;
 mod gpu_data;
+mod harmonics;
 mod maps;
+mod model;
 mod offscreen;
 mod openings;
+mod picture;
 mod pipelines;
 mod renderer;
 mod shader;
@@ -36,9 +42,13 @@ mod upload;
 mod view;
 mod window;
 
+pub use environment::Environment;
 pub use error::RenderError;
+pub use governor::Governor;
 pub use gpu::{Gpu, GpuError};
+pub use model::{SkinModel, UnknownSkinModel};
 pub use offscreen::{FRAMES_IN_FLIGHT, Offscreen};
+pub use picture::{PICTURE_SIDE_MAX, Picture, PictureError};
 pub use renderer::Renderer;
 pub use shader::ShaderError;
 pub use tier::{Tier, UnknownTier};

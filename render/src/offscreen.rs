@@ -2,6 +2,8 @@
 //!
 //! Two pictures can be in flight, so that a batch export encodes one while the next is drawn: call
 //! `submit` for the next, then `take` for the last. `render` does both for a single picture.
+//!
+//! A device that is lost is opened again and what was in flight is drawn anew: the caller notices a pause.
 
 use std::sync::mpsc;
 use std::time::Duration;
@@ -19,15 +21,38 @@ use crate::view::{Extent, View};
 pub const FRAMES_IN_FLIGHT: usize = 2;
 /// Plain bytes: the shaders' film curve ends in sRGB values.
 const FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Rgba8Unorm;
+/// Losses in a row, without a picture between them, after which the device is given up.
+const LOSSES_MAX: u32 = 3;
 /// A picture that takes longer than this will never come.
 const PATIENCE: Duration = Duration::from_secs(60);
 
-/// One picture on its way back.
+/// One picture on its way back, and what it is of, to draw it again.
 #[derive(Debug)]
 struct Slot {
     image: wgpu::Texture,
-    view: wgpu::TextureView,
+    target: wgpu::TextureView,
     rows: wgpu::Buffer,
+    frame: KeyFrame,
+    view: View,
+}
+
+impl Slot {
+    fn new(gpu: &Gpu, size: (u32, u32)) -> Self {
+        let copied = wgpu::TextureUsages::COPY_SRC;
+        let image = texture(gpu.device(), "offscreen", size, FORMAT, 1, copied);
+        Self {
+            target: image.create_view(&wgpu::TextureViewDescriptor::default()),
+            image,
+            rows: gpu.device().create_buffer(&wgpu::BufferDescriptor {
+                label: Some("readback"),
+                size: u64::from(padded_row(size.0)) * u64::from(size.1),
+                usage: wgpu::BufferUsages::COPY_DST | wgpu::BufferUsages::MAP_READ,
+                mapped_at_creation: false,
+            }),
+            frame: KeyFrame::default(),
+            view: View::default(),
+        }
+    }
 }
 
 /// A picture that was submitted and not taken.
@@ -42,6 +67,10 @@ struct Pending {
 #[derive(Debug)]
 pub struct Offscreen {
     gpu: Gpu,
+    /// To begin anew with.
+    head: Box<Head>,
+    tier: Tier,
+    losses: u32,
     renderer: Renderer,
     size: (u32, u32),
     slots: Vec<Slot>,
@@ -59,37 +88,25 @@ impl Offscreen {
     pub fn new(gpu: &Gpu, head: &Head, size: (u32, u32), tier: Tier) -> Result<Self, RenderError> {
         check_size(gpu, size)?;
         let renderer = Renderer::new(gpu, head, FORMAT, tier)?;
-        let slots = (0..FRAMES_IN_FLIGHT)
-            .map(|_| {
-                let image = texture(
-                    gpu.device(),
-                    "offscreen",
-                    size,
-                    FORMAT,
-                    1,
-                    wgpu::TextureUsages::COPY_SRC,
-                );
-                Slot {
-                    view: image.create_view(&wgpu::TextureViewDescriptor::default()),
-                    image,
-                    rows: gpu.device().create_buffer(&wgpu::BufferDescriptor {
-                        label: Some("readback"),
-                        size: u64::from(padded_row(size.0)) * u64::from(size.1),
-                        usage: wgpu::BufferUsages::COPY_DST | wgpu::BufferUsages::MAP_READ,
-                        mapped_at_creation: false,
-                    }),
-                }
-            })
-            .collect();
+        let slots = (0..FRAMES_IN_FLIGHT).map(|_| Slot::new(gpu, size));
         Ok(Self {
+            slots: slots.collect(),
             gpu: gpu.clone(),
+            head: Box::new(head.clone()),
+            tier,
+            losses: 0,
             renderer,
             size,
-            slots,
             pending: std::collections::VecDeque::with_capacity(FRAMES_IN_FLIGHT),
             next_slot: 0,
             pixels: vec![0; size.0 as usize * size.1 as usize * 4],
         })
+    }
+
+    /// The device drawn with: another one after a loss.
+    #[must_use]
+    pub fn gpu(&self) -> &Gpu {
+        &self.gpu
     }
 
     /// Width and height, pixels.
@@ -133,45 +150,79 @@ impl Offscreen {
         if self.pending.len() >= FRAMES_IN_FLIGHT {
             return Err(RenderError::Full(self.pending.len()));
         }
+        let slot = self.next_slot;
+        self.slots[slot].frame.copy_from(key_frame);
+        self.slots[slot].view.clone_from(view);
+        let pending = match self.start(slot) {
+            Err(RenderError::DeviceLost) => {
+                self.recover()?;
+                self.start(slot)?
+            }
+            other => other?,
+        };
+        self.pending.push_back(pending);
+        self.next_slot = (self.next_slot + 1) % FRAMES_IN_FLIGHT;
+        Ok(())
+    }
+
+    /// Sends the commands that draw what is in a slot and read it back.
+    fn start(&mut self, slot: usize) -> Result<Pending, RenderError> {
         let mut encoder =
             self.gpu
                 .device()
                 .create_command_encoder(&wgpu::CommandEncoderDescriptor {
                     label: Some("offscreen"),
                 });
-        let slot = &self.slots[self.next_slot];
-        self.renderer.encode(
-            &self.gpu,
-            &mut encoder,
-            key_frame,
+        let Slot {
+            image,
+            target,
+            rows,
+            frame,
             view,
-            &slot.view,
-            self.size,
-        )?;
+        } = &self.slots[slot];
+        self.renderer
+            .encode(&self.gpu, &mut encoder, frame, view, target, self.size)?;
         encoder.copy_texture_to_buffer(
-            slot.image.as_image_copy(),
+            image.as_image_copy(),
             wgpu::TexelCopyBufferInfo {
-                buffer: &slot.rows,
+                buffer: rows,
                 layout: wgpu::TexelCopyBufferLayout {
                     offset: 0,
                     bytes_per_row: Some(padded_row(self.size.0)),
                     rows_per_image: None,
                 },
             },
-            slot.image.size(),
+            image.size(),
         );
         let (done, mapped) = mpsc::sync_channel(1);
-        encoder.map_buffer_on_submit(&slot.rows, wgpu::MapMode::Read, .., move |result| {
+        encoder.map_buffer_on_submit(rows, wgpu::MapMode::Read, .., move |result| {
             // Nobody waits any more when the offscreen was dropped.
             let _ = done.send(result);
         });
         let submission = self.gpu.queue().submit([encoder.finish()]);
-        self.pending.push_back(Pending {
-            slot: self.next_slot,
+        Ok(Pending {
+            slot,
             submission,
             mapped,
-        });
-        self.next_slot = (self.next_slot + 1) % FRAMES_IN_FLIGHT;
+        })
+    }
+
+    /// Opens the device again, builds everything on it and draws anew what was in flight.
+    fn recover(&mut self) -> Result<(), RenderError> {
+        self.losses += 1;
+        if self.losses > LOSSES_MAX {
+            return Err(RenderError::DeviceLost);
+        }
+        tracing::warn!("the graphics device is opened again");
+        self.gpu = Gpu::headless()?;
+        self.renderer = Renderer::new(&self.gpu, &self.head, FORMAT, self.tier)?;
+        for slot in &mut self.slots {
+            let Slot { frame, view, .. } = std::mem::replace(slot, Slot::new(&self.gpu, self.size));
+            (slot.frame, slot.view) = (frame, view);
+        }
+        for at in 0..self.pending.len() {
+            self.pending[at] = self.start(self.pending[at].slot)?;
+        }
         Ok(())
     }
 
@@ -180,29 +231,49 @@ impl Offscreen {
     /// # Errors
     /// When it cannot be read back.
     pub fn take(&mut self) -> Result<Option<&[u8]>, RenderError> {
-        let Some(pending) = self.pending.pop_front() else {
-            return Ok(None);
-        };
-        let failed = |what: &dyn std::fmt::Display| RenderError::Readback(what.to_string());
-        if let Some(refused) = self.gpu.take_refused() {
-            return Err(RenderError::Refused(refused));
+        while let Some(pending) = self.pending.front() {
+            let slot = pending.slot;
+            match self.wait(pending) {
+                Err(RenderError::DeviceLost) => self.recover()?,
+                other => {
+                    self.pending.pop_front();
+                    other?;
+                    self.losses = 0;
+                    self.read(slot)?;
+                    return Ok(Some(&self.pixels));
+                }
+            }
+        }
+        Ok(None)
+    }
+
+    /// Waits until a picture's rows can be read.
+    fn wait(&self, pending: &Pending) -> Result<(), RenderError> {
+        // A device that was lost says so only when asked, and knows nothing of what was sent to it after.
+        let _ = self.gpu.device().poll(wgpu::PollType::Poll);
+        if self.gpu.is_lost() {
+            return Err(RenderError::DeviceLost);
         }
         let waited = self.gpu.device().poll(wgpu::PollType::Wait {
-            submission_index: Some(pending.submission),
+            submission_index: Some(pending.submission.clone()),
             timeout: Some(PATIENCE),
         });
         if self.gpu.is_lost() {
             return Err(RenderError::DeviceLost);
         }
-        waited.map_err(|e| failed(&e))?;
-        pending
-            .mapped
-            .recv_timeout(PATIENCE)
-            .map_err(|e| failed(&e))?
-            .map_err(|e| failed(&e))?;
-        let rows = &self.slots[pending.slot].rows;
+        if let Some(refused) = self.gpu.take_refused() {
+            return Err(RenderError::Refused(refused));
+        }
+        waited.map_err(|e| unread(&e))?;
+        let mapped = pending.mapped.recv_timeout(PATIENCE);
+        mapped.map_err(|e| unread(&e))?.map_err(|e| unread(&e))
+    }
+
+    /// Copies a slot's rows without their padding; alpha becomes straight where there can be any.
+    fn read(&mut self, slot: usize) -> Result<(), RenderError> {
+        let Slot { rows, view, .. } = &self.slots[slot];
         {
-            let bytes = rows.get_mapped_range(..).map_err(|e| failed(&e))?;
+            let bytes = rows.get_mapped_range(..).map_err(|e| unread(&e))?;
             let row = self.size.0 as usize * 4;
             let padded = padded_row(self.size.0) as usize;
             for (out, row_bytes) in self
@@ -214,7 +285,26 @@ impl Offscreen {
             }
         }
         rows.unmap();
-        Ok(Some(&self.pixels))
+        if !view.background.is_opaque() {
+            straighten(&mut self.pixels);
+        }
+        Ok(())
+    }
+}
+
+fn unread(why: &dyn std::fmt::Display) -> RenderError {
+    RenderError::Readback(why.to_string())
+}
+
+/// Colours that were averaged with the black of nothing, as they are by themselves.
+fn straighten(rgba: &mut [u8]) {
+    for pixel in rgba.as_chunks_mut::<4>().0 {
+        let alpha = u16::from(pixel[3]);
+        if (1..255).contains(&alpha) {
+            for colour in &mut pixel[..3] {
+                *colour = ((u16::from(*colour) * 255 + alpha / 2) / alpha).min(255) as u8;
+            }
+        }
     }
 }
 

@@ -1,7 +1,10 @@
 //! The pipelines: one per material, the two of the shadow map, backdrop and flash; and the layouts
-//! of the three bind groups they share: 0 the frame, 1 the key lamp's shadow, 2 a material's maps.
+//! of the three bind groups they share: 0 the frame, 1 the key lamp's shadow, 2 a material's maps. Those that a
+//! face needs are made beforehand, on several threads; the others when they are first asked for.
 
-use crate::gpu::Gpu;
+use std::sync::OnceLock;
+use std::sync::atomic::{AtomicUsize, Ordering};
+
 use crate::gpu_data::{self, Frame};
 use crate::shader::{self, ShaderError};
 use crate::targets::DEPTH;
@@ -13,6 +16,7 @@ pub(crate) struct Layouts {
     pub(crate) frame: wgpu::BindGroupLayout,
     pub(crate) shadow: wgpu::BindGroupLayout,
     pub(crate) maps: wgpu::BindGroupLayout,
+    pub(crate) skin: wgpu::BindGroupLayout,
 }
 
 impl Layouts {
@@ -35,6 +39,7 @@ impl Layouts {
             multisampled: false,
         };
         let map = texture(wgpu::TextureSampleType::Float { filterable: true });
+        let sampler = wgpu::BindingType::Sampler(wgpu::SamplerBindingType::Filtering);
         let fragment = wgpu::ShaderStages::FRAGMENT;
         // Coarse surfaces read the shadow at their vertices.
         let both = wgpu::ShaderStages::VERTEX_FRAGMENT;
@@ -65,13 +70,21 @@ impl Layouts {
             maps: layout(
                 "maps",
                 &[
-                    entry(
-                        0,
-                        fragment,
-                        wgpu::BindingType::Sampler(wgpu::SamplerBindingType::Filtering),
-                    ),
+                    entry(0, fragment, sampler),
                     entry(1, fragment, map),
                     entry(2, fragment, map),
+                ],
+            ),
+            // Sampler, colour, mask, wrinkles; and the tile of the fine structure with its own sampler.
+            skin: layout(
+                "skin",
+                &[
+                    entry(0, fragment, sampler),
+                    entry(1, fragment, map),
+                    entry(2, fragment, map),
+                    entry(3, fragment, map),
+                    entry(4, fragment, map),
+                    entry(5, fragment, sampler),
                 ],
             ),
         }
@@ -117,6 +130,11 @@ const SKIN: Recipe = Recipe {
     mesh: Mesh::Skin,
     ..solid("skin")
 };
+const SKIN_BLINN_PHONG: Recipe = Recipe {
+    file: "skin_blinn_phong",
+    fragment: Some("skin_blinn_phong"),
+    ..SKIN
+};
 const HAIR: Recipe = Recipe {
     vertex: "hair_vertex",
     strands: true,
@@ -161,6 +179,12 @@ const BACKDROP: Recipe = Recipe {
     depth: wgpu::CompareFunction::LessEqual,
     ..solid("background")
 };
+const PICTURE: Recipe = Recipe {
+    file: "picture",
+    vertex: "picture_vertex",
+    fragment: Some("picture"),
+    ..BACKDROP
+};
 const FLASH: Recipe = Recipe {
     vertex: "flash_vertex",
     mesh: Mesh::None,
@@ -187,37 +211,108 @@ const PART_SHADOW: Recipe = Recipe {
     ..SKIN_SHADOW
 };
 
-/// All pipelines of one target format and sample count.
+/// Which bind groups a pipeline reads, from 0 on.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Groups {
+    /// The frame.
+    Bare,
+    /// Frame and the key lamp's shadow.
+    Lit,
+    /// Frame, shadow and a material's maps.
+    Mapped,
+    /// Frame, and a picture as if it were a map.
+    Hung,
+    /// Frame, shadow and the skin's maps.
+    Skin,
+}
+
+/// Everything that is drawn by a pipeline of its own.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Draw {
+    Skin,
+    SkinBlinnPhong,
+    Hair,
+    Eye,
+    Teeth,
+    Gums,
+    Tongue,
+    Cavity,
+    Lash,
+    Cloth,
+    Inside,
+    SkinShadow,
+    Backdrop,
+    Picture,
+    Flash,
+    Bone,
+    Muscle,
+    Spring,
+    PartShadow,
+}
+
+impl Draw {
+    /// What a face needs, the most work first. The others are made when they are first asked for.
+    pub(crate) const FACE: [Self; 12] = [
+        Self::Skin,
+        Self::Eye,
+        Self::Hair,
+        Self::Teeth,
+        Self::Tongue,
+        Self::Gums,
+        Self::Cavity,
+        Self::Lash,
+        Self::Cloth,
+        Self::Inside,
+        Self::SkinShadow,
+        Self::Backdrop,
+    ];
+    const COUNT: usize = Self::PartShadow as usize + 1;
+
+    fn recipe(self) -> (Recipe, Groups) {
+        match self {
+            Self::Skin => (SKIN, Groups::Skin),
+            Self::SkinBlinnPhong => (SKIN_BLINN_PHONG, Groups::Skin),
+            Self::Hair => (HAIR, Groups::Mapped),
+            Self::Eye => (EYE, Groups::Mapped),
+            Self::Teeth => (solid("teeth"), Groups::Lit),
+            Self::Gums => (solid("gums"), Groups::Lit),
+            Self::Tongue => (solid("tongue"), Groups::Lit),
+            Self::Cavity => (CAVITY, Groups::Lit),
+            Self::Lash => (LASH, Groups::Lit),
+            Self::Cloth => (CLOTH, Groups::Lit),
+            Self::Bone => (BONE, Groups::Lit),
+            Self::Muscle => (MUSCLE, Groups::Lit),
+            Self::Spring => (SPRING, Groups::Lit),
+            Self::Inside => (INSIDE, Groups::Bare),
+            Self::SkinShadow => (SKIN_SHADOW, Groups::Bare),
+            Self::PartShadow => (PART_SHADOW, Groups::Bare),
+            Self::Backdrop => (BACKDROP, Groups::Bare),
+            Self::Flash => (FLASH, Groups::Bare),
+            Self::Picture => (PICTURE, Groups::Hung),
+        }
+    }
+}
+
+/// The pipelines of one target format and sample count, each made when it is first needed.
 #[derive(Debug)]
 pub(crate) struct Pipelines {
-    pub(crate) skin: wgpu::RenderPipeline,
-    pub(crate) eye: wgpu::RenderPipeline,
-    pub(crate) teeth: wgpu::RenderPipeline,
-    pub(crate) gums: wgpu::RenderPipeline,
-    pub(crate) tongue: wgpu::RenderPipeline,
-    pub(crate) cavity: wgpu::RenderPipeline,
-    pub(crate) hair: wgpu::RenderPipeline,
-    pub(crate) lash: wgpu::RenderPipeline,
-    pub(crate) cloth: wgpu::RenderPipeline,
-    pub(crate) bone: wgpu::RenderPipeline,
-    pub(crate) muscle: wgpu::RenderPipeline,
-    pub(crate) spring: wgpu::RenderPipeline,
-    pub(crate) backdrop: wgpu::RenderPipeline,
-    pub(crate) flash: wgpu::RenderPipeline,
-    pub(crate) inside: wgpu::RenderPipeline,
-    pub(crate) skin_shadow: wgpu::RenderPipeline,
-    pub(crate) part_shadow: wgpu::RenderPipeline,
+    device: wgpu::Device,
+    format: wgpu::TextureFormat,
+    samples: u32,
+    detail: Detail,
+    layouts: [wgpu::PipelineLayout; 5],
+    texts: Vec<(&'static str, String)>,
+    made: [OnceLock<wgpu::RenderPipeline>; Draw::COUNT],
 }
 
 impl Pipelines {
     pub(crate) fn new(
-        gpu: &Gpu,
+        device: &wgpu::Device,
         layouts: &Layouts,
         format: wgpu::TextureFormat,
         samples: u32,
         detail: &Detail,
     ) -> Result<Self, ShaderError> {
-        let device = gpu.device();
         let layout = |groups: &[Option<&wgpu::BindGroupLayout>]| {
             device.create_pipeline_layout(&wgpu::PipelineLayoutDescriptor {
                 label: None,
@@ -230,51 +325,72 @@ impl Pipelines {
             Some(&layouts.shadow),
             Some(&layouts.maps),
         );
-        let bare = layout(&[frame]);
-        let lit = layout(&[frame, shadow]);
-        let mapped = layout(&[frame, shadow, maps]);
-        let make = |recipe: &Recipe, layout: &wgpu::PipelineLayout| {
-            pipeline(device, recipe, layout, format, samples, detail)
-        };
         Ok(Self {
-            skin: make(&SKIN, &mapped)?,
-            eye: make(&EYE, &mapped)?,
-            teeth: make(&solid("teeth"), &lit)?,
-            gums: make(&solid("gums"), &lit)?,
-            tongue: make(&solid("tongue"), &lit)?,
-            cavity: make(&CAVITY, &lit)?,
-            hair: make(&HAIR, &mapped)?,
-            lash: make(&LASH, &lit)?,
-            cloth: make(&CLOTH, &lit)?,
-            bone: make(&BONE, &lit)?,
-            muscle: make(&MUSCLE, &lit)?,
-            spring: make(&SPRING, &lit)?,
-            backdrop: make(&BACKDROP, &bare)?,
-            flash: make(&FLASH, &bare)?,
-            inside: make(&INSIDE, &bare)?,
-            skin_shadow: make(&SKIN_SHADOW, &bare)?,
-            part_shadow: make(&PART_SHADOW, &bare)?,
+            device: device.clone(),
+            format,
+            samples,
+            detail: *detail,
+            // In the order of `Groups`.
+            layouts: [
+                layout(&[frame]),
+                layout(&[frame, shadow]),
+                layout(&[frame, shadow, maps]),
+                layout(&[frame, maps]),
+                layout(&[frame, shadow, Some(&layouts.skin)]),
+            ],
+            texts: shader::resolve_all()?,
+            made: std::array::from_fn(|_| OnceLock::new()),
         })
+    }
+
+    /// The pipeline that draws that.
+    pub(crate) fn get(&self, draw: Draw) -> &wgpu::RenderPipeline {
+        self.made[draw as usize].get_or_init(|| self.make(draw))
+    }
+
+    /// Makes those of `wanted` that no one else has taken from `next` yet: for several threads at once.
+    pub(crate) fn make_some(&self, wanted: &[Draw], next: &AtomicUsize) {
+        while let Some(draw) = wanted.get(next.fetch_add(1, Ordering::Relaxed)) {
+            self.get(*draw);
+        }
+    }
+
+    fn make(&self, draw: Draw) -> wgpu::RenderPipeline {
+        let (recipe, groups) = draw.recipe();
+        let text = self.texts.iter().find(|(name, _)| *name == recipe.file);
+        // A recipe's file is one of the files: a test asks for all of them.
+        let text = text.map_or("", |(_, text)| text.as_str());
+        let layout = &self.layouts[groups as usize];
+        pipeline(
+            &self.device,
+            text,
+            &recipe,
+            layout,
+            self.format,
+            self.samples,
+            &self.detail,
+        )
     }
 }
 
 fn pipeline(
     device: &wgpu::Device,
+    text: &str,
     recipe: &Recipe,
     layout: &wgpu::PipelineLayout,
     format: wgpu::TextureFormat,
     samples: u32,
     detail: &Detail,
-) -> Result<wgpu::RenderPipeline, ShaderError> {
-    let text = shader::resolve(recipe.file)?;
+) -> wgpu::RenderPipeline {
     let module = device.create_shader_module(wgpu::ShaderModuleDescriptor {
         label: Some(recipe.file),
-        source: wgpu::ShaderSource::Wgsl(text.as_str().into()),
+        source: wgpu::ShaderSource::Wgsl(text.into()),
     });
     let all = [
         ("DECODE_SRGB", f64::from(u8::from(format.is_srgb()))),
         ("SHADOW_TAPS", f64::from(detail.shadow_taps)),
         ("SAMPLES", f64::from(samples)),
+        ("GRAIN", f64::from(u8::from(detail.grain))),
     ];
     // A constant that a shader does not declare is an error, so each gets its own.
     let constants: Vec<(&str, f64)> = all
@@ -298,56 +414,54 @@ fn pipeline(
             wgpu::ColorWrites::ALL
         },
     })];
-    Ok(
-        device.create_render_pipeline(&wgpu::RenderPipelineDescriptor {
-            label: Some(recipe.vertex),
-            layout: Some(layout),
-            vertex: wgpu::VertexState {
-                module: &module,
-                entry_point: Some(recipe.vertex),
-                compilation_options: options.clone(),
-                buffers: match recipe.mesh {
-                    Mesh::Skin => &skin,
-                    Mesh::Part => &part,
-                    Mesh::None => &[],
-                },
+    device.create_render_pipeline(&wgpu::RenderPipelineDescriptor {
+        label: Some(recipe.vertex),
+        layout: Some(layout),
+        vertex: wgpu::VertexState {
+            module: &module,
+            entry_point: Some(recipe.vertex),
+            compilation_options: options.clone(),
+            buffers: match recipe.mesh {
+                Mesh::Skin => &skin,
+                Mesh::Part => &part,
+                Mesh::None => &[],
             },
-            primitive: wgpu::PrimitiveState {
-                cull_mode: if recipe.mesh == Mesh::None {
-                    None
-                } else {
-                    recipe.cull
-                },
-                ..Default::default()
+        },
+        primitive: wgpu::PrimitiveState {
+            cull_mode: if recipe.mesh == Mesh::None {
+                None
+            } else {
+                recipe.cull
             },
-            depth_stencil: Some(wgpu::DepthStencilState {
-                format: DEPTH,
-                depth_write_enabled: Some(recipe.mesh != Mesh::None),
-                depth_compare: Some(recipe.depth),
-                stencil: wgpu::StencilState::default(),
-                bias: if shadow {
-                    wgpu::DepthBiasState {
-                        constant: 2,
-                        slope_scale: 1.5,
-                        clamp: 0.0,
-                    }
-                } else {
-                    wgpu::DepthBiasState::default()
-                },
-            }),
-            multisample: wgpu::MultisampleState {
-                count: if shadow { 1 } else { samples },
-                alpha_to_coverage_enabled: recipe.strands && samples > 1,
-                ..Default::default()
+            ..Default::default()
+        },
+        depth_stencil: Some(wgpu::DepthStencilState {
+            format: DEPTH,
+            depth_write_enabled: Some(recipe.mesh != Mesh::None),
+            depth_compare: Some(recipe.depth),
+            stencil: wgpu::StencilState::default(),
+            bias: if shadow {
+                wgpu::DepthBiasState {
+                    constant: 2,
+                    slope_scale: 1.5,
+                    clamp: 0.0,
+                }
+            } else {
+                wgpu::DepthBiasState::default()
             },
-            fragment: recipe.fragment.map(|entry| wgpu::FragmentState {
-                module: &module,
-                entry_point: Some(entry),
-                compilation_options: options,
-                targets: &targets,
-            }),
-            multiview_mask: None,
-            cache: None,
         }),
-    )
+        multisample: wgpu::MultisampleState {
+            count: if shadow { 1 } else { samples },
+            alpha_to_coverage_enabled: recipe.strands && samples > 1,
+            ..Default::default()
+        },
+        fragment: recipe.fragment.map(|entry| wgpu::FragmentState {
+            module: &module,
+            entry_point: Some(entry),
+            compilation_options: options,
+            targets: &targets,
+        }),
+        multiview_mask: None,
+        cache: None,
+    })
 }

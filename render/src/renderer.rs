@@ -1,5 +1,8 @@
 //! Draws a head: owns its buffers, maps and pipelines, and writes one picture's commands.
 
+use std::sync::Arc;
+use std::sync::atomic::AtomicUsize;
+
 use mouthpiece_rig::{Head, KeyFrame, Material, Skin};
 
 use crate::bindings::{self, MapGroups};
@@ -8,13 +11,16 @@ use crate::frame;
 use crate::geometry::PartGeometry;
 use crate::gpu::Gpu;
 use crate::gpu_data::{Frame, SkinMoving};
+use crate::maps::Maps;
+use crate::model::SkinModel;
 use crate::openings::Openings;
-use crate::pipelines::{Layouts, Pipelines};
+use crate::picture::Picture;
+use crate::pipelines::{Draw, Layouts, Pipelines};
 use crate::surface::SkinGeometry;
 use crate::targets::Targets;
 use crate::tier::Tier;
 use crate::upload;
-use crate::view::{Extent, Shown, View};
+use crate::view::{Background, Extent, Shown, View};
 
 /// Buffers of one part material.
 #[derive(Debug)]
@@ -48,7 +54,16 @@ pub struct Renderer {
     shadow_map: wgpu::TextureView,
     shadow_group: wgpu::BindGroup,
     maps: MapGroups,
+    layouts: Layouts,
+    hung: Option<Hung>,
     targets: Option<Targets>,
+}
+
+/// The picture behind the head, on the card.
+#[derive(Debug)]
+struct Hung {
+    picture: Arc<Picture>,
+    group: wgpu::BindGroup,
 }
 
 impl Renderer {
@@ -66,9 +81,21 @@ impl Renderer {
         let detail = tier.detail();
         let samples = gpu.samples(format, detail.samples);
         let layouts = Layouts::new(device);
-        let pipelines = Pipelines::new(gpu, &layouts, format, samples, &detail)?;
-
-        let skin = SkinGeometry::of(head, detail.smoothness)?;
+        let pipelines = Pipelines::new(device, &layouts, format, samples, &detail)?;
+        // Pipelines are made beside painting and meshing: nearly all of a start's work is one or the other.
+        let next = AtomicUsize::new(0);
+        let make = || pipelines.make_some(&Draw::FACE, &next);
+        let (skin, painted) = std::thread::scope(|scope| {
+            // Where no thread is to be had the work is done here.
+            let _ = std::thread::Builder::new()
+                .name("pipelines".into())
+                .spawn_scoped(scope, make);
+            let skin = SkinGeometry::of(head, detail.smoothness);
+            let painted = Maps::paint(head, &detail);
+            make();
+            (skin, painted)
+        });
+        let skin = skin?;
         let vertex = wgpu::BufferUsages::VERTEX;
         let skin_moving = upload::buffer(
             gpu,
@@ -107,7 +134,7 @@ impl Renderer {
         });
         let frame_group = bindings::group(device, &layouts.frame, &[frame.as_entire_binding()]);
         let (shadow_map, shadow_group) = bindings::shadow(gpu, &layouts, &detail);
-        let maps = bindings::maps(gpu, &layouts, head, &detail);
+        let maps = bindings::maps(gpu, &layouts, painted, &detail);
 
         let mut pose = head.clone();
         pose.skin = Skin::default();
@@ -134,6 +161,8 @@ impl Renderer {
             shadow_map,
             shadow_group,
             maps,
+            layouts,
+            hung: None,
             targets: None,
         })
     }
@@ -155,15 +184,14 @@ impl Renderer {
         view: &View,
         target: &wgpu::TextureView,
         size: (u32, u32),
-    ) -> Result<(), RenderError> {
+    ) -> Result<wgpu::SubmissionIndex, RenderError> {
         let mut encoder = gpu
             .device()
             .create_command_encoder(&wgpu::CommandEncoderDescriptor {
                 label: Some("picture"),
             });
         self.encode(gpu, &mut encoder, key_frame, view, target, size)?;
-        gpu.queue().submit([encoder.finish()]);
-        Ok(())
+        Ok(gpu.queue().submit([encoder.finish()]))
     }
 
     /// Uploads what changed and writes the commands of one picture.
@@ -189,6 +217,17 @@ impl Renderer {
         check_size(gpu, size)?;
         if self.targets.as_ref().is_none_or(|t| t.size != size) {
             self.targets = Some(Targets::new(gpu.device(), size, self.format, self.samples));
+        }
+        if let Background::Picture(picture) = &view.background
+            && self
+                .hung
+                .as_ref()
+                .is_none_or(|h| !Arc::ptr_eq(&h.picture, picture))
+        {
+            self.hung = Some(Hung {
+                picture: Arc::clone(picture),
+                group: bindings::picture(gpu, &self.layouts, picture),
+            });
         }
         self.skin.set(&key_frame.skin);
         gpu.queue().write_buffer(
@@ -224,10 +263,10 @@ impl Renderer {
         pass.set_bind_group(0, &self.frame_group, &[]);
         match shown {
             Shown::Face => {
-                self.draw_skin(&mut pass, &self.pipelines.skin_shadow, &self.skin_indices);
+                self.draw_skin(&mut pass, Draw::SkinShadow, &self.skin_indices);
             }
             Shown::Anatomy => {
-                pass.set_pipeline(&self.pipelines.part_shadow);
+                pass.set_pipeline(self.pipelines.get(Draw::PartShadow));
                 for (_, buffers) in self.parts.iter().filter(|(m, _)| under_skin(*m)) {
                     draw_part(&mut pass, buffers, 1);
                 }
@@ -264,27 +303,40 @@ impl Renderer {
         pass.set_bind_group(0, &self.frame_group, &[]);
         pass.set_bind_group(1, &self.shadow_group, &[]);
         match view.shown {
-            Shown::Face => self.draw_face(&mut pass, mouth_open),
+            Shown::Face => self.draw_face(&mut pass, view.skin, mouth_open),
             Shown::Anatomy => {
                 for (material, buffers) in self.parts.iter().filter(|(m, _)| under_skin(*m)) {
                     self.draw_material(&mut pass, *material, buffers);
                 }
             }
         }
-        pass.set_pipeline(&self.pipelines.backdrop);
-        pass.draw(0..BACKDROP_VERTICES, 0..1);
+        match &self.hung {
+            Some(hung) if matches!(&view.background, Background::Picture(_)) => {
+                pass.set_pipeline(self.pipelines.get(Draw::Picture));
+                pass.set_bind_group(1, &hung.group, &[]);
+                pass.draw(0..3, 0..1);
+            }
+            _ => {
+                pass.set_pipeline(self.pipelines.get(Draw::Backdrop));
+                pass.draw(0..BACKDROP_VERTICES, 0..1);
+            }
+        }
         if view.flash {
-            pass.set_pipeline(&self.pipelines.flash);
+            pass.set_pipeline(self.pipelines.get(Draw::Flash));
             pass.draw(0..6, 0..1);
         }
     }
 
-    fn draw_face(&self, pass: &mut wgpu::RenderPass<'_>, mouth_open: bool) {
+    fn draw_face(&self, pass: &mut wgpu::RenderPass<'_>, skin: SkinModel, mouth_open: bool) {
         for (material, buffers) in self.parts.iter().filter(|(m, _)| *m == Material::Hair) {
             self.draw_material(pass, *material, buffers);
         }
         pass.set_bind_group(2, &self.maps.skin, &[]);
-        self.draw_skin(pass, &self.pipelines.skin, &self.skin_indices);
+        let model = match skin {
+            SkinModel::Physical => Draw::Skin,
+            SkinModel::BlinnPhong => Draw::SkinBlinnPhong,
+        };
+        self.draw_skin(pass, model, &self.skin_indices);
         let drawn = |m: Material| {
             !matches!(
                 m,
@@ -295,17 +347,12 @@ impl Renderer {
             self.draw_material(pass, *material, buffers);
         }
         if mouth_open && !self.skin.inside.is_empty() {
-            self.draw_skin(pass, &self.pipelines.inside, &self.inside_indices);
+            self.draw_skin(pass, Draw::Inside, &self.inside_indices);
         }
     }
 
-    fn draw_skin(
-        &self,
-        pass: &mut wgpu::RenderPass<'_>,
-        pipeline: &wgpu::RenderPipeline,
-        indices: &wgpu::Buffer,
-    ) {
-        pass.set_pipeline(pipeline);
+    fn draw_skin(&self, pass: &mut wgpu::RenderPass<'_>, draw: Draw, indices: &wgpu::Buffer) {
+        pass.set_pipeline(self.pipelines.get(draw));
         pass.set_vertex_buffer(0, self.skin_moving.slice(..));
         pass.set_vertex_buffer(1, self.skin_still.slice(..));
         pass.set_index_buffer(indices.slice(..), wgpu::IndexFormat::Uint32);
@@ -318,21 +365,20 @@ impl Renderer {
         material: Material,
         buffers: &PartBuffers,
     ) {
-        let p = &self.pipelines;
-        let (pipeline, maps, instances) = match material {
-            Material::Hair => (&p.hair, Some(&self.maps.hair), 1),
-            Material::Eye => (&p.eye, Some(&self.maps.eye), 1),
-            Material::Teeth => (&p.teeth, None, 1),
-            Material::Bone => (&p.bone, None, 1),
-            Material::Muscle => (&p.muscle, None, 1),
-            Material::Spring => (&p.spring, None, 1),
-            Material::Gums => (&p.gums, None, 1),
-            Material::Tongue => (&p.tongue, None, 1),
-            Material::Cavity => (&p.cavity, None, 1),
-            Material::Lash => (&p.lash, None, 1),
-            Material::Cloth | Material::Skin => (&p.cloth, None, 1),
+        let (draw, maps, instances) = match material {
+            Material::Hair => (Draw::Hair, Some(&self.maps.hair), 1),
+            Material::Eye => (Draw::Eye, Some(&self.maps.eye), 1),
+            Material::Teeth => (Draw::Teeth, None, 1),
+            Material::Bone => (Draw::Bone, None, 1),
+            Material::Muscle => (Draw::Muscle, None, 1),
+            Material::Spring => (Draw::Spring, None, 1),
+            Material::Gums => (Draw::Gums, None, 1),
+            Material::Tongue => (Draw::Tongue, None, 1),
+            Material::Cavity => (Draw::Cavity, None, 1),
+            Material::Lash => (Draw::Lash, None, 1),
+            Material::Cloth | Material::Skin => (Draw::Cloth, None, 1),
         };
-        pass.set_pipeline(pipeline);
+        pass.set_pipeline(self.pipelines.get(draw));
         if let Some(maps) = maps {
             pass.set_bind_group(2, maps, &[]);
         }

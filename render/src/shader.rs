@@ -25,8 +25,14 @@ const FILES: &[(&str, &str)] = &[
     ("muscle", include_str!("shaders/muscle.wgsl")),
     ("noise", include_str!("shaders/noise.wgsl")),
     ("part", include_str!("shaders/part.wgsl")),
+    ("picture", include_str!("shaders/picture.wgsl")),
     ("shadow", include_str!("shaders/shadow.wgsl")),
     ("skin", include_str!("shaders/skin.wgsl")),
+    (
+        "skin_blinn_phong",
+        include_str!("shaders/skin_blinn_phong.wgsl"),
+    ),
+    ("skin_surface", include_str!("shaders/skin_surface.wgsl")),
     ("spring", include_str!("shaders/spring.wgsl")),
     ("teeth", include_str!("shaders/teeth.wgsl")),
     ("tongue", include_str!("shaders/tongue.wgsl")),
@@ -46,8 +52,10 @@ pub(crate) const ENTRY_FILES: &[&str] = &[
     "inside",
     "lash",
     "muscle",
+    "picture",
     "shadow",
     "skin",
+    "skin_blinn_phong",
     "spring",
     "teeth",
     "tongue",
@@ -67,8 +75,16 @@ pub enum ShaderError {
 }
 
 /// The text of shader `name` with its includes put in place.
-pub(crate) fn resolve(name: &str) -> Result<String, ShaderError> {
+fn resolve(name: &str) -> Result<String, ShaderError> {
     resolve_in(FILES, name)
+}
+
+/// Every file's text, resolved, by name.
+pub(crate) fn resolve_all() -> Result<Vec<(&'static str, String)>, ShaderError> {
+    FILES
+        .iter()
+        .map(|(name, _)| Ok((*name, resolve(name)?)))
+        .collect()
 }
 
 fn resolve_in(files: &[(&str, &str)], name: &str) -> Result<String, ShaderError> {

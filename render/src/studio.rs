@@ -1,10 +1,12 @@
-//! The light: key, fill and rim lamps of a portrait studio, and the ambient light of its walls.
+//! The light: key, fill and rim lamps of a portrait studio, and the ambient light of the room.
 //!
 //! The lamps follow the camera round the head by part of its angle, as a photographer would move
 //! them, so that every view is lit for its own sake.
 
-use glam::{Mat4, Vec3, Vec4, camera::rh, vec3};
+use glam::{Mat4, Vec3, camera::rh, vec3};
 
+use crate::environment::Environment;
+use crate::harmonics::Harmonics;
 use crate::view::Extent;
 
 /// A lamp far away.
@@ -24,8 +26,8 @@ pub(crate) struct Studio {
     pub(crate) key: Lamp,
     pub(crate) fill: Lamp,
     pub(crate) rim: Lamp,
-    /// Rows a channel, to be multiplied with (direction, 1).
-    pub(crate) ambient: [Vec4; 3],
+    /// The room.
+    pub(crate) ambient: Harmonics,
     /// Brightness of the film.
     pub(crate) exposure: f32,
 }
@@ -34,8 +36,8 @@ pub(crate) struct Studio {
 const FOLLOW: f32 = 0.62;
 
 impl Studio {
-    /// Lit for a camera at that angle round the head.
-    pub(crate) fn portrait(camera_yaw_rad: f32) -> Self {
+    /// Lit for a camera at that angle round the head, in that room.
+    pub(crate) fn portrait(camera_yaw_rad: f32, room: &Environment) -> Self {
         let turn = camera_yaw_rad * FOLLOW;
         let lamp = |azimuth_deg: f32, height_deg: f32, colour: Vec3, half_angle: f32| {
             let (azimuth, height) = (azimuth_deg.to_radians() + turn, height_deg.to_radians());
@@ -49,19 +51,11 @@ impl Studio {
                 half_angle,
             }
         };
-        // Sky, side walls and floor as one linear function of direction.
-        let level = vec3(0.30, 0.31, 0.33);
-        let upward = vec3(0.13, 0.14, 0.16);
-        let forward = vec3(0.06, 0.055, 0.05);
-        let row = |c: usize| {
-            let forward = Vec3::new(turn.sin(), 0.0, turn.cos()) * forward[c];
-            (forward + Vec3::Y * upward[c]).extend(level[c])
-        };
         Self {
             key: lamp(-38.0, 34.0, vec3(1.62, 1.44, 1.30), 0.30),
             fill: lamp(52.0, 6.0, vec3(0.40, 0.43, 0.48), 0.42),
             rim: lamp(148.0, 28.0, vec3(0.95, 0.98, 1.05), 0.25),
-            ambient: [row(0), row(1), row(2)],
+            ambient: room.seen(turn),
             exposure: 0.76,
         }
     }

@@ -6,7 +6,7 @@ use std::str::FromStr;
 use thiserror::Error;
 
 /// A quality tier. Exports name one; it never changes by itself.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub enum Tier {
     /// For software rendering beside a running simulation.
     Low,
@@ -51,8 +51,14 @@ pub(crate) struct Detail {
     pub(crate) smoothness: Smoothness,
     /// Samples a pixel, where offered.
     pub(crate) samples: u32,
-    /// Width of the face maps in texels; they are half as high.
-    pub(crate) map_width: u32,
+    /// Width of the skin's mask in texels; it is half as high.
+    pub(crate) mask_map: u32,
+    /// Side of the skin's map of wrinkles in texels.
+    pub(crate) wrinkle_map: u32,
+    /// Side of the tile of the skin's fine structure in texels.
+    pub(crate) grain_map: u32,
+    /// Whether the skin's fine structure is drawn.
+    pub(crate) grain: bool,
     /// Side of the eye map in texels.
     pub(crate) eye_map: u32,
     /// Side of the key light's shadow map in texels.
@@ -87,7 +93,10 @@ impl Tier {
                     bow_mm: 0.0,
                 },
                 samples: 1,
-                map_width: 1024,
+                mask_map: 512,
+                wrinkle_map: 512,
+                grain_map: 256,
+                grain: false,
                 eye_map: 256,
                 hair_map: 512,
                 shadow_map: 256,
@@ -100,7 +109,10 @@ impl Tier {
                     bow_mm: 0.15,
                 },
                 samples: 4,
-                map_width: 2048,
+                mask_map: 1024,
+                wrinkle_map: 1024,
+                grain_map: 512,
+                grain: true,
                 eye_map: 512,
                 hair_map: 768,
                 shadow_map: 384,
@@ -113,7 +125,10 @@ impl Tier {
                     bow_mm: 0.15,
                 },
                 samples: 4,
-                map_width: 4096,
+                mask_map: 2048,
+                wrinkle_map: 1024,
+                grain_map: 1024,
+                grain: true,
                 eye_map: 1024,
                 hair_map: 1024,
                 shadow_map: 448,

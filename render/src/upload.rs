@@ -22,7 +22,11 @@ pub(crate) fn buffer<T: bytemuck::NoUninit>(
 
 /// An image of plain bytes, with all its halvings.
 pub(crate) fn image(gpu: &Gpu, label: &str, image: Image) -> wgpu::TextureView {
-    let levels = image.into_mips();
+    let mut levels = image.into_mips();
+    // What is larger than the card can hold is shown a step coarser.
+    let max = gpu.device().limits().max_texture_dimension_2d as usize;
+    let fits = |level: &Image| level.width <= max && level.height <= max;
+    levels.drain(..levels.iter().position(fits).unwrap_or(0));
     let size = |level: &Image| wgpu::Extent3d {
         width: level.width as u32,
         height: level.height as u32,

@@ -5,10 +5,15 @@
 //! head in any frame from 9:16 to 32:9.
 
 use std::str::FromStr;
+use std::sync::Arc;
 
 use glam::{Mat4, Vec3, camera::rh, vec3};
 use mouthpiece_rig::{Head, Material};
 use thiserror::Error;
+
+use crate::environment::Environment;
+use crate::model::SkinModel;
+use crate::picture::Picture;
 
 /// Where the camera stands.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
@@ -54,12 +59,35 @@ impl Camera {
 }
 
 /// What is behind the head. Colours are sRGB bytes.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Debug, PartialEq, Eq)]
 pub enum Background {
     /// One colour.
     Plain([u8; 3]),
     /// A lit studio wall of that colour: brighter behind the head, darker at the corners.
     Studio([u8; 3]),
+    /// From one colour at the top to another at the bottom.
+    Gradient {
+        /// At the top.
+        top: [u8; 3],
+        /// At the bottom.
+        bottom: [u8; 3],
+    },
+    /// A picture that fills the frame; what juts out is cut off.
+    Picture(Arc<Picture>),
+    /// Nothing: pixels read back have straight alpha. A window shows black.
+    Transparent,
+}
+
+impl Background {
+    /// Whether pixels read back can be anything but opaque.
+    #[must_use]
+    pub fn is_opaque(&self) -> bool {
+        match self {
+            Self::Plain(_) | Self::Studio(_) | Self::Gradient { .. } => true,
+            Self::Picture(picture) => picture.is_opaque(),
+            Self::Transparent => false,
+        }
+    }
 }
 
 /// What of the head is drawn.
@@ -73,14 +101,18 @@ pub enum Shown {
 }
 
 /// How to look at the head.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Debug, PartialEq)]
 pub struct View {
     /// Where from.
     pub camera: Camera,
     /// Against what.
     pub background: Background,
+    /// In what room's light, beside the lamps'.
+    pub environment: Environment,
     /// What of it.
     pub shown: Shown,
+    /// How its skin reflects light.
+    pub skin: SkinModel,
     /// Draws a large white square in the upper left corner: what a test of sound against picture
     /// looks for in its recording of the screen.
     pub flash: bool,
@@ -91,7 +123,9 @@ impl Default for View {
         Self {
             camera: Camera::Front,
             background: Background::Studio([92, 98, 104]),
+            environment: Environment::default(),
             shown: Shown::Face,
+            skin: SkinModel::default(),
             flash: false,
         }
     }

@@ -2,6 +2,8 @@
 //! loop is the caller's; nothing here panics when the window is hidden, minimised or dragged between screens.
 
 use std::sync::Arc;
+use std::thread::JoinHandle;
+use std::time::{Duration, Instant};
 
 use mouthpiece_rig::{Head, KeyFrame};
 use wgpu::rwh::{HasDisplayHandle, HasWindowHandle};
@@ -11,6 +13,9 @@ use crate::gpu::{Gpu, GpuError};
 use crate::renderer::Renderer;
 use crate::tier::Tier;
 use crate::view::View;
+
+/// The longest that a picture may take.
+const PATIENCE: Duration = Duration::from_secs(10);
 
 /// What became of a picture.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -38,6 +43,10 @@ pub struct WindowTarget {
     size: (u32, u32),
     max_side: u32,
     make_surface: MakeSurface,
+    tier: Tier,
+    /// The renderer of another tier, in the making on a thread of its own.
+    coming: Option<(Tier, JoinHandle<Result<Renderer, RenderError>>)>,
+    cost_ns: i64,
 }
 
 impl std::fmt::Debug for WindowTarget {
@@ -96,6 +105,9 @@ impl WindowTarget {
             size: (0, 0),
             max_side,
             make_surface,
+            tier,
+            coming: None,
+            cost_ns: 0,
         };
         target.resize(size);
         Ok(target)
@@ -105,6 +117,57 @@ impl WindowTarget {
     #[must_use]
     pub fn gpu(&self) -> &Gpu {
         &self.gpu
+    }
+
+    /// The tier that is drawn in.
+    #[must_use]
+    pub fn tier(&self) -> Tier {
+        self.tier
+    }
+
+    /// What the last picture cost: from having a place for it to its being done, nanoseconds.
+    #[must_use]
+    pub fn cost_ns(&self) -> i64 {
+        self.cost_ns
+    }
+
+    /// Whether another tier is in the making.
+    #[must_use]
+    pub fn is_preparing(&self) -> bool {
+        self.coming.is_some()
+    }
+
+    /// Begins to make ready for another tier, beside drawing in this one; pictures are of the other as soon as it can be. Where it
+    /// cannot, a warning says so and this one stays.
+    pub fn prepare(&mut self, head: &Arc<Head>, tier: Tier) {
+        if self.coming.is_some() || tier == self.tier {
+            return;
+        }
+        let (gpu, head, format) = (self.gpu.clone(), Arc::clone(head), self.config.format);
+        let spawned = std::thread::Builder::new()
+            .name("other tier".into())
+            .spawn(move || Renderer::new(&gpu, &head, format, tier));
+        match spawned {
+            Ok(thread) => self.coming = Some((tier, thread)),
+            Err(error) => tracing::warn!(%error, "no thread to make another tier ready"),
+        }
+    }
+
+    /// Takes over the other tier's renderer once it is there.
+    fn take_over(&mut self) {
+        if self.coming.as_ref().is_none_or(|(_, t)| !t.is_finished()) {
+            return;
+        }
+        let Some((tier, thread)) = self.coming.take() else {
+            return;
+        };
+        match thread.join() {
+            Ok(Ok(renderer)) => (self.renderer, self.tier) = (renderer, tier),
+            Ok(Err(error)) => {
+                tracing::warn!(tier = tier.name(), "the tier cannot be drawn: {error}");
+            }
+            Err(_) => tracing::warn!(tier = tier.name(), "making the tier ready broke down"),
+        }
     }
 
     /// Takes over the window's new size; one without area only stops the drawing.
@@ -131,6 +194,7 @@ impl WindowTarget {
         if self.size.0 == 0 || self.size.1 == 0 {
             return Ok(Outcome::Hidden);
         }
+        self.take_over();
         let (texture, stale) = match self.surface.get_current_texture() {
             Acquired::Success(texture) => (texture, false),
             Acquired::Suboptimal(texture) => (texture, true),
@@ -148,13 +212,26 @@ impl WindowTarget {
                 return Ok(Outcome::Retry);
             }
         };
+        let begun = Instant::now();
         let target = texture
             .texture
             .create_view(&wgpu::TextureViewDescriptor::default());
         let size = (texture.texture.width(), texture.texture.height());
-        self.renderer
+        let submission = self
+            .renderer
             .draw(&self.gpu, key_frame, view, &target, size)?;
         self.gpu.queue().present(texture);
+        // To know what pictures cost, and so that none queue up. A card that takes longer than this hangs.
+        let done = self.gpu.device().poll(wgpu::PollType::Wait {
+            submission_index: Some(submission),
+            timeout: Some(PATIENCE),
+        });
+        if done.is_err() || self.gpu.is_lost() {
+            return Err(RenderError::DeviceLost.into());
+        }
+        self.cost_ns = i64::try_from(begun.elapsed().as_nanos()).unwrap_or(i64::MAX);
+        // A command that is refused once is refused each time: not an error to end with, but one to hear of.
+        self.gpu.take_refused();
         if stale {
             self.surface.configure(self.gpu.device(), &self.config);
         }

@@ -7,7 +7,7 @@ use mouthpiece_render::{
     Background, Camera, Extent, FRAMES_IN_FLIGHT, Gpu, Offscreen, RenderError, Tier, View,
 };
 use mouthpiece_rig::lip_level::CONTACT;
-use mouthpiece_rig::{Control, Head, KeyFrame};
+use mouthpiece_rig::{Control, Head, KeyFrame, Material};
 
 fn gpu() -> Option<Gpu> {
     match Gpu::headless() {
@@ -84,7 +84,7 @@ fn the_same_frame_gives_the_same_bytes() {
             &head.rest_frame(),
             &View {
                 camera: Camera::Side,
-                ..view
+                ..view.clone()
             },
         )
         .unwrap();
@@ -273,7 +273,9 @@ fn the_whole_head_is_in_the_frame_at_any_aspect() {
                 "{degrees} degrees is no portrait lens"
             );
             let mut highest = 0.0_f32;
-            for place in &head.skin.mesh.positions {
+            let hair = head.parts.iter().filter(|p| p.material == Material::Hair);
+            let hair = hair.flat_map(|part| &part.mesh.positions);
+            for place in head.skin.mesh.positions.iter().chain(hair) {
                 if place.y < extent.min.y {
                     continue;
                 }

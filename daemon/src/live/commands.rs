@@ -3,7 +3,7 @@
 use std::time::Duration;
 
 use anyhow::{Result, bail};
-use mouthpiece_render::{Background, Tier, View};
+use mouthpiece_render::Background;
 use tokio::runtime::Runtime;
 use tokio::sync::oneshot;
 
@@ -17,7 +17,7 @@ use super::speaker;
 use super::stop::Stop;
 use super::sync::{self, Flash};
 use super::window::{Display, Look, Wake};
-use crate::cli::{RunArgs, SayArgs, StageArgs, TierArg};
+use crate::cli::{RunArgs, SayArgs, StageArgs, Usage};
 use crate::interrupt::Interrupted;
 use crate::pipeline::Cast;
 
@@ -32,13 +32,14 @@ pub fn run(args: &RunArgs) -> Result<()> {
         Some(text) => Address::parse(text)?,
         None => Address::user_default()?,
     };
+    let look = look(&args.stage)?;
     // First, so that a second daemon ends before it has cost anything.
     let server = net.block_on(Server::bind(&address))?;
     let cast = Cast::load(&args.stage.cast)?;
     let (player, sight) = Player::start(&cast, choice(&args.stage), args.stage.seed)?;
     let serving = net.spawn(server.serve(player.handle()));
     let seen = match Display::open() {
-        Ok(display) => show(display, &net, &cast, sight, &args.stage, &stop, None, None),
+        Ok(display) => show(display, &net, &cast, sight, look, &stop, None, None),
         Err(error) => Err(error),
     };
     if let Err(error) = seen {
@@ -93,6 +94,7 @@ fn perform(
     net: &Runtime,
     stop: &Stop,
 ) -> Result<()> {
+    let look = look(stage)?;
     let cast = Cast::load(&stage.cast)?;
     let (player, sight) = Player::start(&cast, choice(stage), stage.seed)?;
     let display = match Display::open() {
@@ -127,7 +129,7 @@ fn perform(
         })
     };
     let seen = match display {
-        Some(display) => show(display, net, &cast, sight, stage, stop, flash, Some(first)),
+        Some(display) => show(display, net, &cast, sight, look, stop, flash, Some(first)),
         None => {
             net.block_on(stop.wait());
             Ok(())
@@ -154,7 +156,7 @@ fn show(
     net: &Runtime,
     cast: &Cast,
     sight: Sight,
-    stage: &StageArgs,
+    look: Look,
     stop: &Stop,
     flash: Option<Flash>,
     shown: Option<oneshot::Sender<()>>,
@@ -165,25 +167,21 @@ fn show(
         // Closed already: nothing to wake.
         let _ = proxy.send_event(Wake::Quit);
     });
-    let look = look(stage);
     display.show(std::sync::Arc::clone(&cast.head), sight, look, flash, shown)
 }
 
-fn look(stage: &StageArgs) -> Look {
-    let mut view = View::default();
-    if let Some(colour) = stage.background {
-        view.background = Background::Plain(colour.0);
+fn look(stage: &StageArgs) -> Result<Look> {
+    let view = stage.scene.view()?;
+    if view.background == Background::Transparent {
+        let why = "--background transparent: a window is not; write out-%05d.png with `mouthpiece export`";
+        return Err(Usage(why.into()).into());
     }
-    Look {
+    Ok(Look {
         size: (stage.size.width, stage.size.height),
         fullscreen: stage.fullscreen,
-        tier: match stage.tier {
-            TierArg::Low => Tier::Low,
-            TierArg::Medium => Tier::Medium,
-            TierArg::High => Tier::High,
-        },
+        tier: stage.tier.fixed(),
         view,
-    }
+    })
 }
 
 fn choice(stage: &StageArgs) -> Choice {

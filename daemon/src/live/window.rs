@@ -11,7 +11,7 @@
 use std::sync::Arc;
 
 use anyhow::{Context as _, Result, anyhow, bail};
-use mouthpiece_render::{Outcome, Tier, View, WindowTarget};
+use mouthpiece_render::{Governor, Outcome, Tier, View, WindowTarget};
 use mouthpiece_rig::{Head, KeyFrame};
 use tokio::sync::oneshot;
 use winit::application::ApplicationHandler;
@@ -46,11 +46,12 @@ pub enum Wake {
 }
 
 /// How the window looks.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Debug)]
 pub struct Look {
     pub size: (u32, u32),
     pub fullscreen: bool,
-    pub tier: Tier,
+    /// None: the best that keeps pace, found while it runs.
+    pub tier: Option<Tier>,
     pub view: View,
 }
 
@@ -98,6 +99,7 @@ impl Display {
             last_tick: i64::MIN,
             open: None,
             pace: Pace::default(),
+            governor: Governor::default(),
             failures: 0,
             error: None,
         };
@@ -119,6 +121,7 @@ struct App {
     last_tick: i64,
     open: Option<Open>,
     pace: Pace,
+    governor: Governor,
     failures: u32,
     error: Option<anyhow::Error>,
 }
@@ -232,7 +235,8 @@ impl App {
     fn target(&mut self, window: &Arc<Window>) -> Result<WindowTarget> {
         let size = window.inner_size();
         let size = (size.width, size.height);
-        let target = WindowTarget::new(Arc::clone(window), size, &self.head, self.look.tier)?;
+        let tier = self.look.tier.unwrap_or_else(|| self.governor.tier());
+        let target = WindowTarget::new(Arc::clone(window), size, &self.head, tier)?;
         self.pace.set_software(target.gpu().is_software());
         Ok(target)
     }
@@ -274,7 +278,7 @@ impl App {
         if !self.sight.frames.sample(self.last_tick, &mut self.frame) {
             return Ok(Outcome::Retry); // the simulation has not begun
         }
-        let mut view = self.look.view;
+        let mut view = self.look.view.clone();
         view.flash |= self
             .flash
             .as_ref()
@@ -288,20 +292,30 @@ impl App {
             None => self.target(&window)?,
         };
         window.pre_present_notify();
-        let outcome = target.draw(&self.frame, &view);
-        if target.gpu().is_software() {
-            // The processor draws: wait for it, to know how long it takes and to leave it some rest.
-            let done = target
-                .gpu()
-                .device()
-                .poll(wgpu::PollType::wait_indefinitely());
-            done.context("the picture was not finished")?;
+        let outcome = target.draw(&self.frame, &view)?;
+        if outcome == Outcome::Shown && self.look.tier.is_none() {
+            self.govern(&mut target);
         }
-        let outcome = outcome?;
         if let Some(open) = &mut self.open {
             open.target = Some(target);
         }
         Ok(outcome)
+    }
+
+    /// Goes to another tier where the picture just drawn says so.
+    fn govern(&mut self, target: &mut WindowTarget) {
+        if target.is_preparing() {
+            return; // and that costs time, too: what pictures cost meanwhile says nothing
+        }
+        if self.governor.tier() != target.tier() {
+            self.governor.failed(target.tier());
+        }
+        let cost_ns = target.cost_ns();
+        if let Some(tier) = self.governor.picture(cost_ns, self.pace.budget_ns()) {
+            let ms = cost_ns as f64 * 1e-6;
+            tracing::info!(tier = tier.name(), ms, "another tier suits this machine");
+            target.prepare(&self.head, tier);
+        }
     }
 
     fn give_up(&mut self, events: &ActiveEventLoop, error: anyhow::Error) {

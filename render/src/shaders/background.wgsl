@@ -1,5 +1,6 @@
-// The backdrop: a lit wall, or one colour, behind everything. A grid of cells, coloured at its corners:
-// the wall changes slowly, and most of a picture is wall.
+// The backdrop: a lit wall, a gradient, one colour or nothing, behind everything. A grid of cells, coloured at its
+// corners: the wall changes slowly, and most of a picture is wall. Where there is none the picture's alpha, which all
+// else has set to one, falls to nothing.
 
 #include "frame"
 
@@ -20,9 +21,10 @@ fn backdrop_vertex(@builtin(vertex_index) index: u32) -> WallFragment {
     let corner = vec2(cell % CELLS.x + (k & 1u), cell / CELLS.x + (k >> 1u));
     let at = vec2<f32>(corner) / vec2<f32>(CELLS);
     let p = (at - vec2(0.5, 0.45)) * vec2(min(frame.backdrop[0].w, 1.6), 1.0);
+    let share = select(smoothstep(0.05, 0.95, length(p)), at.y, frame.backdrop[1].w > 0.5);
     var out: WallFragment;
     out.clip = vec4(at * vec2(2.0, -2.0) + vec2(-1.0, 1.0), 1.0, 1.0);
-    out.colour = mix(frame.backdrop[0].rgb, frame.backdrop[1].rgb, smoothstep(0.05, 0.95, length(p)));
+    out.colour = mix(frame.backdrop[0].rgb, frame.backdrop[1].rgb, share);
     return out;
 }
 
@@ -32,5 +34,5 @@ fn backdrop(in: WallFragment) -> @location(0) vec4<f32> {
     let q = vec2<u32>(in.clip.xy);
     let grain = f32(((q.x * 1597u) ^ (q.y * 5167u)) * 2654435761u >> 24u) / 255.0 - 0.5;
     let varies = any(frame.backdrop[0].rgb != frame.backdrop[1].rgb);
-    return shown(in.colour + select(0.0, grain / 255.0, varies));
+    return shown(in.colour + select(0.0, grain / 255.0, varies)) * frame.picture.w;
 }

@@ -20,8 +20,8 @@ struct Frame {
     key_colour: vec4<f32>,
     fill_colour: vec4<f32>,
     rim_colour: vec4<f32>,
-    // Ambient light from direction n is dot(row, vec4(n, 1)), one row a channel.
-    ambient: array<vec4<f32>, 3>,
+    // Ambient light on a surface that faces n, spherical harmonics of order 2: see ambient_from in light.wgsl.
+    ambient: array<vec4<f32>, 7>,
     // Middle of the opening between the lips in the head's frame; w: half its width.
     mouth: vec4<f32>,
     // x: half the height of that opening, mm.
@@ -33,10 +33,16 @@ struct Frame {
     lids: array<vec4<f32>, 4>,
     // The same of the head at rest.
     lids_at_rest: array<vec4<f32>, 4>,
-    // Backdrop in the middle and in the corners, sRGB; w of the first: width over height.
+    // Backdrop in the middle and in the corners, or above and below, sRGB; w of the first: width over height;
+    // w of the second: 1 where it runs from above to below.
     backdrop: array<vec4<f32>, 2>,
-    // Size of the picture in pixels, share of its height that the flash square takes, unused.
+    // Size of the picture in pixels, share of its height that the flash square takes, how much the backdrop
+    // covers: 1, or 0 where there is none.
     picture: vec4<f32>,
+    // How far the zones of wrinkles are wrinkled (see maps/zones.rs): first layer left, right, second left, right.
+    wrinkled: array<vec4<f32>, 4>,
+    // Direction from the head towards the camera, unit length.
+    toward_camera: vec4<f32>,
 }
 
 @group(0) @binding(0) var<uniform> frame: Frame;

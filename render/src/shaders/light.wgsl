@@ -66,10 +66,13 @@ fn key_visible_around(place: vec3<f32>) -> f32 {
     return sum / 9.0;
 }
 
-// Ambient light from around a direction.
+// Ambient light from around a direction: the room's nine numbers a colour. Keep in step with harmonics.rs.
 fn ambient_from(n: vec3<f32>) -> vec3<f32> {
     let v = vec4(n, 1.0);
-    return max(vec3(dot(frame.ambient[0], v), dot(frame.ambient[1], v), dot(frame.ambient[2], v)), vec3(0.0));
+    let q = n.xyzz * n.yzzx;
+    let broad = vec3(dot(frame.ambient[0], v), dot(frame.ambient[1], v), dot(frame.ambient[2], v));
+    let crossed = vec3(dot(frame.ambient[3], q), dot(frame.ambient[4], q), dot(frame.ambient[5], q));
+    return max(broad + crossed + frame.ambient[6].rgb * (n.x * n.x - n.y * n.y), vec3(0.0));
 }
 
 // Occlusion of a coloured surface: what bounces within a fold keeps the surface's colour.

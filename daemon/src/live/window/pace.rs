@@ -61,6 +61,15 @@ impl Pace {
         }
     }
 
+    /// What drawing a picture may take, so that all come in time and the processor has its rest.
+    pub(super) fn budget_ns(&self) -> i64 {
+        if self.software {
+            SOFTWARE_NS.max(self.refresh_ns) * 10 / (10 + REST_TENTHS)
+        } else {
+            self.refresh_ns * 8 / 10
+        }
+    }
+
     /// How long after now the middle of the picture's time on the screen is.
     pub(super) fn ahead_ns(&self) -> i64 {
         self.draw_ns + self.interval_ns() / 2
