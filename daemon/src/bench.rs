@@ -3,6 +3,7 @@
 //! Each figure is of the code that the product runs, not of a copy. Run it on a quiet machine: but for the
 //! simulation's, a figure says what one run took, without repetition or statistics.
 
+mod pictures;
 mod simulation;
 
 use std::hint::black_box;
@@ -10,9 +11,9 @@ use std::sync::Arc;
 use std::time::Instant as Wall;
 
 use indicatif::ProgressBar;
-use mouthpiece_render::{FRAMES_IN_FLIGHT, Gpu, Offscreen};
-use mouthpiece_rig::{KeyFrame, STEP_TICKS, TICK_RATE};
-use serde_json::{Map, Value, json};
+use mouthpiece_render::{Gpu, Offscreen};
+use mouthpiece_rig::{STEP_TICKS, TICK_RATE};
+use serde_json::{Value, json};
 
 use crate::cli::{BenchArgs, Fps, LookArgs, SceneArgs, Size, TierArg, ViewArg};
 use crate::export::Job;
@@ -32,9 +33,6 @@ const SIZES: [Size; 2] = [
         height: 720,
     },
 ];
-
-/// Pictures drawn for each figure, after one that is not counted.
-const PICTURES: u32 = 8;
 
 /// Runs the command.
 pub fn run(args: &BenchArgs) -> anyhow::Result<()> {
@@ -66,8 +64,10 @@ pub fn run(args: &BenchArgs) -> anyhow::Result<()> {
         "simulation": springs,
         "simulation_layered": layered,
         "spring_pass": simulation::spring_pass(&cast.head),
-        "render": render(&cast, &gpu, &mut performance)?,
-        "export": export(&cast, utterance)?,
+        "render": pictures::render(&cast, &gpu, &mut performance)?,
+        "render_over_blinn_phong": pictures::over_blinn_phong(&cast, &gpu, &mut performance)?,
+        "live_low": pictures::beside_simulation(&cast, &gpu, &part)?,
+        "export": export(&cast, &utterance)?,
         "rss_mb": peak_mb(),
         "adapter": gpu.info().name,
     });
@@ -97,41 +97,15 @@ fn speech(part: &Part, ticks: i64) -> Value {
     json!({ "realtime_factor": rounded(seconds(ticks) / started.elapsed().as_secs_f64()) })
 }
 
-/// Time from picture to picture while pictures overlap, as in an export.
-fn render(cast: &Cast, gpu: &Gpu, performance: &mut Performance) -> anyhow::Result<Value> {
-    let mut instant = Instant::default();
-    let frames: Vec<KeyFrame> = (1..=i64::from(PICTURES) + 1)
-        .map(|k| {
-            performance.at(k * TICK_RATE / 10, &mut instant);
-            instant.frame.clone()
-        })
-        .collect();
-    let mut tiers = Map::new();
-    for tier in [TierArg::Low, TierArg::Medium, TierArg::High] {
-        let view = look(tier).view()?;
-        let mut sizes = Map::new();
-        for size in SIZES {
-            let mut offscreen =
-                Offscreen::new(gpu, &cast.head, (size.width, size.height), tier.into())?;
-            offscreen.render(&frames[0], &view)?;
-            let started = Wall::now();
-            for frame in &frames[1..] {
-                offscreen.submit(frame, &view)?;
-                if offscreen.in_flight() >= FRAMES_IN_FLIGHT {
-                    black_box(offscreen.take()?);
-                }
-            }
-            while black_box(offscreen.take()?).is_some() {}
-            let ms = started.elapsed().as_secs_f64() * 1e3 / f64::from(PICTURES);
-            sizes.insert(size.to_string(), json!({ "ms": rounded(ms) }));
-        }
-        tiers.insert(tier.name().into(), Value::Object(sizes));
-    }
-    Ok(Value::Object(tiers))
+/// The whole export of the demo at its defaults, from labels to a file that is thrown away; and the same in the low tier.
+fn export(cast: &Cast, utterance: &Utterance) -> anyhow::Result<Value> {
+    Ok(json!({
+        "realtime_factor": export_in(TierArg::Medium, cast, utterance.clone())?,
+        "low": { "realtime_factor": export_in(TierArg::Low, cast, utterance.clone())? },
+    }))
 }
 
-/// The whole export of the demo at its defaults, from labels to a file that is thrown away.
-fn export(cast: &Cast, utterance: Utterance) -> anyhow::Result<Value> {
+fn export_in(tier: TierArg, cast: &Cast, utterance: Utterance) -> anyhow::Result<f64> {
     let folder = tempfile::tempdir()?;
     let started = Wall::now();
     let clip_s = seconds(utterance.ticks);
@@ -140,7 +114,7 @@ fn export(cast: &Cast, utterance: Utterance) -> anyhow::Result<Value> {
         utterance,
         size: SIZES[0],
         fps: Fps { num: 30, den: 1 },
-        look: look(TierArg::Medium),
+        look: look(tier),
         mood: Mood::default(),
         seed: 1,
         bitrate: None,
@@ -148,7 +122,7 @@ fn export(cast: &Cast, utterance: Utterance) -> anyhow::Result<Value> {
     let clip = job.clip();
     let sink = Box::new(Mp4Sink::new(&folder.path().join("bench.mp4"), &clip)?);
     job.export(sink, &clip, &ProgressBar::hidden())?;
-    Ok(json!({ "realtime_factor": rounded(clip_s / started.elapsed().as_secs_f64()) }))
+    Ok(rounded(clip_s / started.elapsed().as_secs_f64()))
 }
 
 fn look(tier: TierArg) -> LookArgs {

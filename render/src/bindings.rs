@@ -1,9 +1,10 @@
 //! What the shaders read beside vertices, bound once: the shadow map, and the maps of skin, eyes and hair.
 
 use crate::gpu::Gpu;
+use crate::layouts::Layouts;
 use crate::maps::Maps;
+use crate::maps::image::Image;
 use crate::picture::Picture;
-use crate::pipelines::Layouts;
 use crate::targets::{DEPTH, texture};
 use crate::tier::Detail;
 use crate::upload;
@@ -24,32 +25,7 @@ pub(crate) fn maps(gpu: &Gpu, layouts: &Layouts, painted: Maps, detail: &Detail)
     let mask = upload::image(gpu, "skin mask", painted.skin.mask);
     let wrinkles = upload::image(gpu, "skin wrinkles", painted.skin.wrinkles);
     let grain = upload::image(gpu, "skin grain", painted.skin.grain);
-    // Never in software: Mesa's rasteriser was seen to take minutes over one anisotropic frame.
-    let anisotropy = if gpu.is_software() {
-        1
-    } else {
-        detail.anisotropy
-    };
-    let clamped = wgpu::SamplerDescriptor {
-        label: Some("maps"),
-        mag_filter: wgpu::FilterMode::Linear,
-        min_filter: wgpu::FilterMode::Linear,
-        // In software a second level is a second read; anisotropic reads need it.
-        mipmap_filter: if anisotropy > 1 {
-            wgpu::MipmapFilterMode::Linear
-        } else {
-            wgpu::MipmapFilterMode::Nearest
-        },
-        anisotropy_clamp: anisotropy,
-        ..Default::default()
-    };
-    let sampler = gpu.device().create_sampler(&clamped);
-    let tiling = gpu.device().create_sampler(&wgpu::SamplerDescriptor {
-        label: Some("tile"),
-        address_mode_u: wgpu::AddressMode::Repeat,
-        address_mode_v: wgpu::AddressMode::Repeat,
-        ..clamped
-    });
+    let [sampler, tiling] = samplers(gpu, detail);
     let bound = |first, second| {
         let view = wgpu::BindingResource::TextureView;
         group(
@@ -77,6 +53,73 @@ pub(crate) fn maps(gpu: &Gpu, layouts: &Layouts, painted: Maps, detail: &Detail)
         ),
         eye: bound(&eye, &eye),
         hair: bound(&hair, &hair),
+    }
+}
+
+/// For maps that end at their edges, and for one that repeats.
+fn samplers(gpu: &Gpu, detail: &Detail) -> [wgpu::Sampler; 2] {
+    // Never in software: Mesa's rasteriser was seen to take minutes over one anisotropic frame.
+    let anisotropy = if gpu.is_software() {
+        1
+    } else {
+        detail.anisotropy
+    };
+    let clamped = wgpu::SamplerDescriptor {
+        label: Some("maps"),
+        mag_filter: wgpu::FilterMode::Linear,
+        min_filter: wgpu::FilterMode::Linear,
+        // In software a second level is a second read; anisotropic reads need it.
+        mipmap_filter: if anisotropy > 1 {
+            wgpu::MipmapFilterMode::Linear
+        } else {
+            wgpu::MipmapFilterMode::Nearest
+        },
+        anisotropy_clamp: anisotropy,
+        ..Default::default()
+    };
+    [
+        gpu.device().create_sampler(&clamped),
+        gpu.device().create_sampler(&wgpu::SamplerDescriptor {
+            label: Some("tile"),
+            address_mode_u: wgpu::AddressMode::Repeat,
+            address_mode_v: wgpu::AddressMode::Repeat,
+            ..clamped
+        }),
+    ]
+}
+
+/// Bound as `maps` binds them, but of images made by `image`, which is told a map's side.
+pub(crate) fn stand_ins(
+    gpu: &Gpu,
+    layouts: &Layouts,
+    detail: &Detail,
+    image: impl Fn(u32) -> Image,
+) -> MapGroups {
+    let view = |side| upload::image(gpu, "warm-up", image(side));
+    let (hair, eye, skin) = (
+        view(detail.hair_map),
+        view(detail.eye_map),
+        view(detail.mask_map),
+    );
+    let [sampler, tiling] = samplers(gpu, detail);
+    let hair = wgpu::BindingResource::TextureView(&hair);
+    let eye = wgpu::BindingResource::TextureView(&eye);
+    let skin = wgpu::BindingResource::TextureView(&skin);
+    let sampler = wgpu::BindingResource::Sampler(&sampler);
+    let tiling = wgpu::BindingResource::Sampler(&tiling);
+    let of_skin = [
+        sampler.clone(),
+        skin.clone(),
+        skin.clone(),
+        skin.clone(),
+        skin,
+        tiling,
+    ];
+    let device = gpu.device();
+    MapGroups {
+        skin: group(device, &layouts.skin, &of_skin),
+        eye: group(device, &layouts.maps, &[sampler.clone(), eye.clone(), eye]),
+        hair: group(device, &layouts.maps, &[sampler, hair.clone(), hair]),
     }
 }
 

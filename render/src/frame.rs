@@ -37,7 +37,7 @@ pub(crate) fn data(
     size: (u32, u32),
 ) -> Frame {
     let open = match view.shown {
-        Shown::Face => open,
+        Shown::Face | Shown::Yardstick => open,
         Shown::Anatomy => &BARE,
     };
     let framing = extent.frame(view.camera, size);

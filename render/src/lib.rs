@@ -5,7 +5,7 @@
 //! # The life of a picture
 //! [`Gpu`] picks an adapter and says which. [`Renderer::new`] paints the maps of skin, eyes and hair
 //! on the processor (`maps`), turns the head's meshes into buffers (`surface`, `geometry`) and its
-//! shaders into pipelines (`pipelines`). For each picture the skin's positions and normals and one uniform block
+//! shaders into pipelines (`recipes`, `pipelines`). For each picture the skin's positions and normals and one uniform block
 //! (`gpu_data::Frame`) go up: where the bodies are, the camera ([`View`], [`Extent`]), the lamps
 //! (`studio`) and the room's light (`environment`, `harmonics`), and how far mouth and eyes are open (`openings`). Then two passes: depth as the key
 //! lamp sees it, and the picture. Each shader ends in the film's curve, so the resolve of the
@@ -26,12 +26,15 @@ mod governor;
 mod gpu;
 mod gpu_data;
 mod harmonics;
+mod layouts;
 mod maps;
 mod model;
 mod offscreen;
 mod openings;
+mod passes;
 mod picture;
 mod pipelines;
+mod recipes;
 mod renderer;
 mod shader;
 mod studio;
@@ -40,6 +43,7 @@ mod targets;
 mod tier;
 mod upload;
 mod view;
+mod warm_up;
 mod window;
 
 pub use environment::Environment;

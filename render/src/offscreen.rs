@@ -200,6 +200,7 @@ impl Offscreen {
             let _ = done.send(result);
         });
         let submission = self.gpu.queue().submit([encoder.finish()]);
+        self.renderer.submitted(&self.gpu);
         Ok(Pending {
             slot,
             submission,
@@ -249,15 +250,17 @@ impl Offscreen {
 
     /// Waits until a picture's rows can be read.
     fn wait(&self, pending: &Pending) -> Result<(), RenderError> {
-        // A device that was lost says so only when asked, and knows nothing of what was sent to it after.
-        let _ = self.gpu.device().poll(wgpu::PollType::Poll);
-        if self.gpu.is_lost() {
-            return Err(RenderError::DeviceLost);
+        let wait = |submission_index| {
+            self.gpu.device().poll(wgpu::PollType::Wait {
+                submission_index,
+                timeout: Some(PATIENCE),
+            })
+        };
+        let waited = wait(Some(pending.submission.clone()));
+        if waited.is_err() {
+            // A lost device knows nothing of what was sent to it after, and says that it is lost once all before is done.
+            let _ = wait(None);
         }
-        let waited = self.gpu.device().poll(wgpu::PollType::Wait {
-            submission_index: Some(pending.submission.clone()),
-            timeout: Some(PATIENCE),
-        });
         if self.gpu.is_lost() {
             return Err(RenderError::DeviceLost);
         }

@@ -36,6 +36,7 @@ const FILES: &[(&str, &str)] = &[
     ("spring", include_str!("shaders/spring.wgsl")),
     ("teeth", include_str!("shaders/teeth.wgsl")),
     ("tongue", include_str!("shaders/tongue.wgsl")),
+    ("yardstick", include_str!("shaders/yardstick.wgsl")),
 ];
 
 /// The files that pipelines are made of; the others are only included.
@@ -59,6 +60,7 @@ pub(crate) const ENTRY_FILES: &[&str] = &[
     "spring",
     "teeth",
     "tongue",
+    "yardstick",
 ];
 
 /// A mistake in the shader files themselves.

@@ -9,6 +9,7 @@ use clap::Args;
 use mouthpiece_render::{Background, Environment, Picture, View};
 use thiserror::Error;
 
+use super::skin::SkinArg;
 use super::values::Rgb;
 
 /// What is round the head.
@@ -20,6 +21,9 @@ pub struct SceneArgs {
     /// Ambient light from a panorama, .hdr or .exr; its middle is what the face looks at [default: a studio]
     #[arg(long, value_name = "F")]
     pub environment: Option<PathBuf>,
+    /// How the skin reflects light
+    #[arg(long, value_enum, default_value_t)]
+    pub skin: SkinArg,
 }
 
 /// A backdrop on the command line.
@@ -93,6 +97,7 @@ impl SceneArgs {
         Ok(View {
             background,
             environment,
+            skin: self.skin.into(),
             ..view
         })
     }
@@ -139,7 +144,7 @@ mod tests {
     fn a_file_that_is_not_there_is_named() {
         let scene = SceneArgs {
             background: Some(BackgroundArg::Picture("no/such.png".into())),
-            environment: None,
+            ..SceneArgs::default()
         };
         let error = format!("{:#}", scene.view().unwrap_err());
         assert!(
