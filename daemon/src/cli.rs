@@ -5,6 +5,7 @@
 
 mod head;
 mod scene;
+mod skin;
 mod values;
 
 use std::path::PathBuf;

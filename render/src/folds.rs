@@ -19,7 +19,7 @@ pub(crate) struct Folds {
 }
 
 /// How much of the light a fold leaves goes by its bend over this many mm.
-const REACH_MM: f32 = 5.0;
+const REACH_MM: f32 = 4.0;
 /// Bend (convex, 1/mm) that counts as wholly convex: the tip of a small nose, an ear's rim.
 const SHARP: f32 = 0.12;
 /// A bend beyond this, 1/mm, is no skin's but a seam's where lips or lids touch.
@@ -81,7 +81,7 @@ impl Folds {
     /// how convex it is, 0..1.
     pub(crate) fn at(&self, point: usize) -> (f32, f32) {
         let (now, rest) = (self.now[point], self.rest[point]);
-        let left = |bend: f32| 1.0 - (bend * REACH_MM).clamp(0.0, 0.62);
+        let left = |bend: f32| 1.0 - (bend * REACH_MM).clamp(0.0, 0.5);
         let ratio = left(now) / left(rest);
         (0.5 * ratio, (-now / SHARP).clamp(0.0, 1.0))
     }

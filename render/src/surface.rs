@@ -4,6 +4,7 @@
 use glam::Vec3;
 use mouthpiece_rig::{Detail, Head, Material, Subdivision, SubdivisionError};
 
+use crate::folds::Folds;
 use crate::gpu_data::{SkinMoving, SkinStill, unorm};
 use crate::maps;
 use crate::maps::hairline::Hairline;
@@ -22,6 +23,7 @@ pub(crate) struct SkinGeometry {
     control_count: usize,
     points: Vec<Vec3>,
     normals: Vec<Vec3>,
+    folds: Folds,
 }
 
 impl SkinGeometry {
@@ -41,6 +43,8 @@ impl SkinGeometry {
             &skin.mesh.occlusion,
         ]
         .map(|values| surface.spread(values));
+        let marks = maps::landmarks::Landmarks::of(head);
+        let zones = zones(&surface, rest, &marks);
         let points = surface.point_count();
         let still = (0..points as u32)
             .chain(surface.copies().iter().copied())
@@ -55,6 +59,8 @@ impl SkinGeometry {
                         unorm(wet[i]),
                         unorm(occlusion[i]),
                     ],
+                    grain: maps::grain::place(*uv, &marks).to_array(),
+                    zones: zones[i],
                 }
             })
             .collect();
@@ -66,8 +72,11 @@ impl SkinGeometry {
             control_count: rest.len(),
             points: vec![Vec3::ZERO; points],
             normals: vec![Vec3::ZERO; points],
+            folds: Folds::of(points, surface.triangles(), surface.copies()),
             surface,
         };
+        geometry.set(rest);
+        geometry.folds.rest(&geometry.points, &geometry.normals);
         geometry.set(rest);
         Ok(geometry)
     }
@@ -87,10 +96,22 @@ impl SkinGeometry {
         debug_assert_eq!(positions.len(), self.control_count);
         self.surface.apply(positions, &mut self.points);
         self.surface.normals(&self.points, &mut self.normals);
-        for ((out, p), n) in self.moving.iter_mut().zip(&self.points).zip(&self.normals) {
+        for normal in &mut self.normals {
+            *normal = normal.normalize_or(Vec3::Z);
+        }
+        self.folds.measure(&self.points, &self.normals);
+        for (i, ((out, p), n)) in self
+            .moving
+            .iter_mut()
+            .zip(&self.points)
+            .zip(&self.normals)
+            .enumerate()
+        {
+            let (light, convex) = self.folds.at(i);
             *out = SkinMoving {
                 position: p.to_array(),
-                normal: n.normalize_or(Vec3::Z).to_array(),
+                normal: n.to_array(),
+                bend: [unorm(light), unorm(convex), 0, 0],
             };
         }
         let points = self.points.len();
@@ -98,6 +119,20 @@ impl SkinGeometry {
             self.moving[points + k] = self.moving[source as usize];
         }
     }
+}
+
+/// The drawn points' shares of the zones of wrinkles.
+fn zones(
+    surface: &Subdivision,
+    rest: &[Vec3],
+    marks: &maps::landmarks::Landmarks,
+) -> Vec<[[u8; 4]; 2]> {
+    let mut points = vec![Vec3::ZERO; surface.point_count()];
+    surface.apply(rest, &mut points);
+    points
+        .iter()
+        .map(|p| maps::zones::zones_at(*p, marks).map(|zones| zones.map(unorm)))
+        .collect()
 }
 
 /// Millimetres within the hairline at which skin is never seen.

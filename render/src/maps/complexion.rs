@@ -48,17 +48,17 @@ fn taken_at(x: usize, y: usize) -> [f32; 3] {
         value_tiled(x as f32 * scale, y as f32 * scale, cells, seed) - 0.5
     };
     // Cells of 18, 7, 3 and 1.2 mm.
-    let blood = 0.9 * at(8, 1) + 0.9 * at(21, 2) + 0.75 * at(47, 3) + 0.5 * at(120, 4);
-    let pigment = 0.7 * at(11, 5) + 0.5 * at(39, 6) + 0.45 * at(97, 7);
+    let blood = 0.45 * at(8, 1) + 0.65 * at(21, 2) + 0.75 * at(47, 3) + 0.65 * at(120, 4);
+    let pigment = 0.35 * at(11, 5) + 0.45 * at(39, 6) + 0.50 * at(97, 7);
     let speckle = unit(hash(x as i32 / 2, y as i32 / 2, 8)) - 0.5;
     // Fine red threads where blood lies near the surface.
     let thread = (1.0 - 9.0 * (at(33, 9) + 0.35 * at(80, 10)).abs()).max(0.0) * at(9, 11).max(0.0);
     let blood = blood + 0.9 * thread;
     let pigment = pigment + 0.22 * speckle;
     [
-        0.012 * blood + 0.040 * pigment,
-        0.088 * blood + 0.066 * pigment,
-        0.074 * blood + 0.090 * pigment,
+        0.010 * blood + 0.040 * pigment,
+        0.080 * blood + 0.062 * pigment,
+        0.068 * blood + 0.080 * pigment,
     ]
 }
 

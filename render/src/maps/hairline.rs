@@ -3,10 +3,7 @@
 use glam::{Vec2, vec2};
 use mouthpiece_rig::Head;
 
-use super::{CHART_HEIGHT, RADIUS};
-
-/// Millimetres a unit of the chart's `uv`.
-const CHART_MM: Vec2 = vec2(std::f32::consts::TAU * RADIUS, CHART_HEIGHT);
+use super::CHART_MM;
 
 /// Both sides of the hairline, from the forehead backwards.
 #[derive(Clone, Debug)]

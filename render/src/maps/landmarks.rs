@@ -60,8 +60,6 @@ impl Landmarks {
 /// What lies under each place of the skin's map, on a coarse grid.
 #[derive(Clone, Debug)]
 pub(crate) struct Ground {
-    pub(crate) width: usize,
-    pub(crate) height: usize,
     /// Position, mm, and vermilion; none where no skin is mapped.
     pub(crate) cells: Vec<Option<(Vec3, f32)>>,
 }
@@ -97,11 +95,7 @@ impl Ground {
                 });
             }
         }
-        Self {
-            width,
-            height,
-            cells,
-        }
+        Self { cells }
     }
 }
 

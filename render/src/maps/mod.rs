@@ -1,36 +1,43 @@
 //! The maps of skin, eyes and hair (HEADSHOP 4.4). The skin's colour is the head's own; the others
 //! are painted by program, those of the skin by place on the face.
 //!
-//! The skin's detail map covers the part of the chart that shows grain: 223 degrees of longitude, from
-//! 150 mm to -106 mm. So 2048 x 1024 texels give 6 texels a mm across the face, where the whole cylinder
-//! would give under 4; at the edges the grain fades to plain skin, which the sampler extends.
+//! The skin's wrinkles cover the window of the chart that shows a face: 151 degrees of longitude, from 135 mm to
+//! -90 mm, so that 1024 x 1024 texels give over 4 texels a mm; at its edges it is flat, which the sampler extends.
 //!
 //! Colours are kept as the square root of linear light: the shader squares them, which costs less in
 //! software rendering than decoding sRGB. Nothing here knows of wgpu.
 
+mod complexion;
+mod creases;
 pub(crate) mod eye;
+pub(crate) mod grain;
 pub(crate) mod hair;
 pub(crate) mod hairline;
 pub(crate) mod image;
 pub(crate) mod landmarks;
+mod mask;
 pub(crate) mod noise;
 pub(crate) mod skin;
 pub(crate) mod strokes;
 pub(crate) mod tone;
+mod wrinkles;
+pub(crate) mod zones;
 
 use glam::{Vec2, vec2};
 use mouthpiece_rig::Head;
 
 use crate::tier::Detail;
 
-/// Part of the chart that the skin's detail map covers. Keep in step with shaders/skin.wgsl.
-pub(crate) const WINDOW_MIN: Vec2 = vec2(0.19, 0.0);
+/// Part of the chart that the skin's wrinkles cover. Keep in step with shaders/skin_surface.wgsl.
+pub(crate) const WINDOW_MIN: Vec2 = vec2(0.29, 0.06);
 /// See [`WINDOW_MIN`].
-pub(crate) const WINDOW_MAX: Vec2 = vec2(0.81, 1.0);
+pub(crate) const WINDOW_MAX: Vec2 = vec2(0.71, 0.94);
 /// A mean radius of the face, mm: turns longitude into length for textures' grain.
 pub(crate) const RADIUS: f32 = 92.0;
 /// Height of the whole chart, mm.
 pub(crate) const CHART_HEIGHT: f32 = 256.0;
+/// Millimetres a unit of the chart's `uv`.
+pub(crate) const CHART_MM: Vec2 = vec2(std::f32::consts::TAU * RADIUS, CHART_HEIGHT);
 
 /// Every map of a head.
 #[derive(Clone, Debug)]
@@ -48,7 +55,7 @@ impl Maps {
             let beside = std::thread::Builder::new()
                 .name("paint hair".into())
                 .spawn_scoped(scope, hair);
-            let skin = skin::paint(head, detail.map_width as usize);
+            let skin = skin::paint(head, detail);
             let eye = eye::paint(detail.eye_map as usize);
             // Where no thread is to be had, or it failed, the work is done here.
             let hair = beside

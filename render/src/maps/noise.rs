@@ -41,26 +41,61 @@ pub(crate) fn fractal(x: f32, y: f32, seed: u32) -> f32 {
         / 7.0
 }
 
-/// Distances to the nearest and second nearest of points scattered one a cell of side 1.
-pub(crate) fn cells(x: f32, y: f32, seed: u32) -> (f32, f32) {
+/// [`value`] that repeats after `period` cells both ways.
+pub(crate) fn value_tiled(x: f32, y: f32, period: i32, seed: u32) -> f32 {
     let (xi, yi) = (below(x), below(y));
-    let (fx, fy) = (x - xi as f32, y - yi as f32);
-    let (mut first, mut second) = (9.0_f32, 9.0_f32);
+    let smooth = |t: f32| t * t * (3.0 - 2.0 * t);
+    let (u, v) = (smooth(x - xi as f32), smooth(y - yi as f32));
+    let at = |dx: i32, dy: i32| {
+        let wrapped = |i: i32| i.rem_euclid(period);
+        unit(hash(wrapped(xi + dx), wrapped(yi + dy), seed))
+    };
+    let low = at(0, 0) + (at(1, 0) - at(0, 0)) * u;
+    let high = at(0, 1) + (at(1, 1) - at(0, 1)) * u;
+    low + (high - low) * v
+}
+
+/// The three nearest of points scattered one a cell of side 1, repeating after `period` cells both ways.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Near {
+    /// Distances, nearest first.
+    pub(crate) distance: [f32; 3],
+    /// What the nearest is known by.
+    pub(crate) hash: u32,
+}
+
+/// See [`Near`]. Points stay within `spread` of their cells' middles: the less, the more even the pattern.
+pub(crate) fn cells(x: f32, y: f32, period: i32, spread: f32, seed: u32) -> Near {
+    let (xi, yi) = (below(x), below(y));
+    let (fx, fy) = (x - xi as f32 - 0.5, y - yi as f32 - 0.5);
+    let mut near = Near {
+        distance: [9.0; 3],
+        hash: 0,
+    };
     for dy in -1..=1 {
         for dx in -1..=1 {
-            let h = hash(xi + dx, yi + dy, seed);
-            let px = dx as f32 + (h & 0xFFFF) as f32 / 65536.0 - fx;
-            let py = dy as f32 + (h >> 16) as f32 / 65536.0 - fy;
+            let h = hash(
+                (xi + dx).rem_euclid(period),
+                (yi + dy).rem_euclid(period),
+                seed,
+            );
+            let off = |bits: u32| ((bits & 0xFFFF) as f32 / 65536.0 - 0.5) * 2.0 * spread;
+            let px = dx as f32 + off(h) - fx;
+            let py = dy as f32 + off(h >> 16) - fy;
             let d = px * px + py * py;
+            let [first, second, third] = near.distance;
             if d < first {
-                second = first;
-                first = d;
-            } else {
-                second = second.min(d);
+                near.distance = [d, first, second];
+                near.hash = h;
+            } else if d < second {
+                near.distance = [first, d, second];
+            } else if d < third {
+                near.distance[2] = d;
             }
         }
     }
-    (first.sqrt(), second.sqrt())
+    near.distance = near.distance.map(f32::sqrt);
+    near
 }
 
 /// A small generator for scattering: SplitMix's step, cut to 32 bits.

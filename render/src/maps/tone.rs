@@ -1,20 +1,18 @@
 //! The broad properties of skin by place on a face: where it is oily, rough, porous or thin.
 
-use glam::{Vec2, Vec3, vec3};
+use glam::{Vec3, vec3};
 
 use super::landmarks::Landmarks;
-use super::{WINDOW_MAX, WINDOW_MIN, ramp};
+use super::ramp;
 
-/// Gloss, depth of the skin's cells, depth of pores, translucence, lip, strength of all grain; 0..1.
-pub(super) type Tone = [f32; 6];
+/// Gloss, depth of the fine structure, how much pores show, translucence, lip; 0..1.
+pub(super) type Tone = [f32; 5];
 
 /// Skin of which nothing is known.
-pub(super) const PLAIN: Tone = [0.30, 0.0, 0.0, 0.0, 0.0, 0.0];
-/// Share of the width at each side over which grain fades to plain skin.
-const FADE: f32 = 0.06;
+pub(super) const PLAIN: Tone = [0.30, 0.5, 0.1, 0.0, 0.0];
 
-/// The tone of a place: where it lies, how red the lips are there, and its `uv`.
-pub(super) fn tone_at(p: Vec3, red: f32, uv: Vec2, m: &Landmarks) -> Tone {
+/// The tone of a place: where it lies and how red the lips are there.
+pub(super) fn tone_at(p: Vec3, red: f32, m: &Landmarks) -> Tone {
     let s = m.scale;
     let side = vec3(p.x.abs(), p.y, p.z);
     // Ellipsoid blots, 1 in the middle.
@@ -58,11 +56,15 @@ pub(super) fn tone_at(p: Vec3, red: f32, uv: Vec2, m: &Landmarks) -> Tone {
         - 0.16 * bag
         - 0.10 * ear
         - 0.14 * neck;
-    let depth = 0.85 - 0.45 * lid - 0.25 * bag - 0.1 * ear;
-    let pores = 0.16 + 0.85 * tip + 0.55 * wing + 0.45 * cheek + 0.18 * forehead + 0.2 * chin;
+    let depth = 0.80 - 0.45 * lid - 0.25 * bag - 0.1 * ear + 0.15 * tip + 0.10 * cheek;
+    let pores = 0.22
+        + 0.85 * tip
+        + 0.60 * wing
+        + 0.55 * cheek
+        + 0.25 * forehead
+        + 0.35 * chin
+        + 0.3 * bridge;
     let thin = (0.95 * ear + 0.5 * wing + 0.3 * tip + 0.25 * lid).min(1.0);
-    // Plain towards the window's sides, which the sampler goes on with.
-    let x = (uv.x - WINDOW_MIN.x) / (WINDOW_MAX.x - WINDOW_MIN.x);
-    let inner = ramp(0.0, FADE, x.min(1.0 - x));
-    [oil, depth * inner, pores * inner, thin, red, inner]
+    let depth = depth * (1.0 - 0.85 * ramp(0.2, 0.6, red));
+    [oil, depth, pores * (1.0 - ramp(0.1, 0.4, red)), thin, red]
 }

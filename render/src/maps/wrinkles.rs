@@ -9,7 +9,7 @@ use glam::{Vec2, vec2};
 use mouthpiece_rig::{Head, Layer};
 
 use super::creases::{Crease, Relief};
-use super::noise::{cells, value};
+use super::noise::{cells, unit, value};
 use super::{CHART_MM, WINDOW_MAX, WINDOW_MIN, ramp};
 
 /// The two layers of heights.
@@ -171,26 +171,25 @@ impl Face<'_> {
             let middle = al.lerp(ch, 0.5);
             creases.push(Crease {
                 points: vec![
-                    off(al, 0.5, -9.0),
-                    off(al, 4.5, -3.0),
-                    off(middle, 7.5, -3.5),
-                    off(ch, 9.0, -8.0),
-                    off(ch, 11.5, 1.0),
-                    off(ch, 10.0, 9.0),
+                    off(al, 0.5, -8.0),
+                    off(al, 5.0, -2.5),
+                    off(middle, 10.5, -4.5),
+                    off(ch, 13.5, -12.0),
+                    off(ch, 17.5, -3.0),
+                    off(ch, 18.0, 6.0),
                 ],
-                depth_mm: 0.95,
-                half_width_mm: 2.0,
-                shoulders: cheek(0.62, 0.12),
-                fade: [0.20, 0.30],
+                depth_mm: 0.85,
+                half_width_mm: 2.1,
+                shoulders: cheek(0.55, 0.08),
+                fade: [0.20, 0.40],
             });
             creases.push(Crease {
                 points: vec![
-                    off(ch, 17.0, -15.0),
-                    off(ch, 20.5, -6.0),
-                    off(ch, 20.5, 4.0),
-                    off(ch, 17.5, 12.0),
+                    off(ch, 23.0, -15.0),
+                    off(ch, 26.5, -6.0),
+                    off(ch, 26.5, 4.0),
                 ],
-                depth_mm: 0.42,
+                depth_mm: 0.22,
                 half_width_mm: 1.7,
                 shoulders: cheek(0.5, 0.3),
                 fade: [0.35, 0.35],
@@ -251,9 +250,10 @@ impl Face<'_> {
                 let off = (place - pg) / radius;
                 let share = ramp(1.0, 0.25, off.length());
                 if share > 0.0 {
-                    let near = cells(place.x * 0.36, place.y * 0.36, 1 << 12, 0.40, 77);
-                    let pit = ramp(0.55, 0.05, near.distance[0]);
-                    relief.heights[y * relief.width + x] -= 0.42 * share * pit;
+                    let near = cells(place.x * 0.24, place.y * 0.27, 1 << 12, 0.42, 77);
+                    let pit = ramp(0.62, 0.0, near.distance[0]);
+                    let some = 0.35 + 0.65 * unit(near.hash);
+                    relief.heights[y * relief.width + x] -= 0.50 * share * pit * some;
                 }
             }
         }
@@ -274,7 +274,7 @@ impl Face<'_> {
                     let bend = 2.6 * value(at.x * 0.16, at.y * 0.30, 53);
                     let crease = value(at.x * 0.80 + bend, at.y * 0.21, 61) - 0.5;
                     let fine = value(at.x * 2.3 + bend, at.y * 0.45, 67) - 0.5;
-                    relief.heights[y * relief.width + x] += share * (0.22 * crease + 0.11 * fine);
+                    relief.heights[y * relief.width + x] += share * (0.30 * crease + 0.15 * fine);
                 }
             }
         }
@@ -305,13 +305,14 @@ impl Face<'_> {
             let tall = if out > 0.0 { 1.0 } else { 0.82 };
             creases.push(Crease {
                 points: vec![
-                    at(0.56, bottom.y + 4.5),
-                    at(0.64, bottom.y - 3.0),
-                    at(0.66, top.y - 5.0 * tall),
-                    at(0.80, top.y - 13.0 * tall),
+                    at(0.50, bottom.y + 4.0),
+                    at(0.66, bottom.y - 1.5),
+                    at(if out > 0.0 { 0.58 } else { 0.70 }, top.y - 4.0 * tall),
+                    at(0.72, top.y - 8.0 * tall),
+                    at(if out > 0.0 { 0.98 } else { 0.82 }, top.y - 14.0 * tall),
                 ],
-                depth_mm: 0.85,
-                half_width_mm: 1.35,
+                depth_mm: 0.68,
+                half_width_mm: 1.7,
                 shoulders: [0.6, 0.6],
                 fade: [0.25, 0.45],
             });
@@ -390,7 +391,7 @@ impl Face<'_> {
             return Vec::new();
         };
         let mut creases = Vec::new();
-        for (down, depth_mm) in [(-4.0, 0.30), (0.5, 0.42), (4.5, 0.26)] {
+        for (down, depth_mm) in [(-4.0, 0.22), (0.5, 0.34), (4.5, 0.20)] {
             let at = |across: f32, sag: f32| n + vec2(across, down + sag);
             creases.push(Crease {
                 points: vec![at(-11.0, 1.0), at(-4.0, -0.6), at(4.0, 0.2), at(11.0, 0.6)],

@@ -144,7 +144,7 @@ fn surface(in: SkinFragment) -> Surface {
     var pore = 0.0;
     if GRAIN {
         let grain = textureSample(grain_map, tile_sampler, in.fine.xy);
-        slope += (grain.xy - FLAT) * (2.0 * mask.g);
+        slope += (grain.xy - FLAT) * (2.6 * mask.g);
         furrow = grain.z * mask.g;
         pore = grain.w * texel.a;
     }
