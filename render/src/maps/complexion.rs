@@ -14,11 +14,19 @@ const SIDE: usize = 512;
 pub(super) struct Complexion {
     taken: Vec<[f32; 3]>,
     strength: f32,
+    mean: [f32; 3],
 }
 
+/// By how much more a painted face's zones (ruddy, pale, bluish) differ from its mean: at the size of a window paint
+/// as soft as the head's is looks like one colour.
+const ZONES: f32 = 0.38;
+/// What differs from the mean by more than this, in bytes, is no zone of skin but a brow or the lips' red.
+const ZONE_MOST: f32 = 26.0;
+
 impl Complexion {
-    /// For a colour map whose texels vary from their neighbours by that much (see [`unevenness`]).
-    pub(super) fn new(unevenness: f32) -> Self {
+    /// What `image`, the square roots of a head's colours, lacks.
+    pub(super) fn of(image: &Image) -> Self {
+        let (unevenness, mean) = survey(image);
         let strength = ramp(3.6, 1.6, unevenness);
         let mut taken = vec![[0.0; 3]; SIDE * SIDE];
         if strength > 0.0 {
@@ -28,7 +36,11 @@ impl Complexion {
                 }
             });
         }
-        Self { taken, strength }
+        Self {
+            taken,
+            strength,
+            mean,
+        }
     }
 
     /// A texel's colour with the variation laid over it; `share` is how much of it the place takes.
@@ -36,7 +48,9 @@ impl Complexion {
         let taken = &self.taken[(y % SIDE) * SIDE + x % SIDE];
         let share = share * self.strength;
         std::array::from_fn(|c| {
-            (f32::from(root[c]) * (1.0 - taken[c] * share) + 0.5).clamp(0.0, 255.0) as u8
+            let root = f32::from(root[c]);
+            let zone = (root - self.mean[c]).clamp(-ZONE_MOST, ZONE_MOST) * ZONES * share;
+            ((root + zone) * (1.0 - taken[c] * share) + 0.5).clamp(0.0, 255.0) as u8
         })
     }
 }
@@ -62,16 +76,17 @@ fn taken_at(x: usize, y: usize) -> [f32; 3] {
     ]
 }
 
-/// How much a colour map varies within a few texels, in bytes: the mean of what the green of its
-/// middle differs from the mean around it.
-pub(super) fn unevenness(image: &Image) -> f32 {
+/// How much a colour map varies within a few texels, in bytes (the mean of what its green differs from the mean
+/// around it); and its mean colour. Over forehead to chin, between the eyes' outer corners; brows, eyes and mouth are
+/// few among so many.
+fn survey(image: &Image) -> (f32, [f32; 3]) {
     let (width, height) = (image.width, image.height);
     let reach = (width / 400).max(1);
-    // Forehead to chin, between the eyes' outer corners; brows, eyes and mouth are few among so many.
-    let (mut sum, mut count) = (0.0_f32, 0.0_f32);
+    let (mut sum, mut count, mut colour) = (0.0_f32, 0.0_f32, [0.0_f32; 3]);
     for y in (height * 3 / 10..height * 8 / 10).step_by(7) {
         for x in (width * 4 / 10..width * 6 / 10).step_by(7) {
-            let green = |x: usize, y: usize| f32::from(image.texels[y * width + x][1]);
+            let texel = |x: usize, y: usize| image.texels[y * width + x];
+            let green = |x: usize, y: usize| f32::from(texel(x, y)[1]);
             let around = (green(x - reach, y)
                 + green(x + reach, y)
                 + green(x, y - reach)
@@ -82,8 +97,43 @@ pub(super) fn unevenness(image: &Image) -> f32 {
             if off < 12.0 {
                 sum += off;
                 count += 1.0;
+                for (mean, value) in colour.iter_mut().zip(texel(x, y)) {
+                    *mean += f32::from(value);
+                }
             }
         }
     }
-    if count > 0.0 { sum / count } else { 0.0 }
+    let count = count.max(1.0);
+    (sum / count, colour.map(|sum| sum / count))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn face(texel: impl Fn(usize) -> [u8; 4]) -> Image {
+        let mut image = Image::new(256, 128);
+        (0..256 * 128).for_each(|i| image.texels[i] = texel(i));
+        image
+    }
+
+    #[test]
+    fn an_even_face_is_varied_and_a_photographed_one_left_alone() {
+        let even = Complexion::of(&face(|_| [190, 150, 130, 0]));
+        let texels: Vec<_> = (0..400)
+            .map(|x| even.over([190, 150, 130], x, 40, 1.0))
+            .collect();
+        assert!(texels.iter().any(|t| t != &texels[0]));
+        let photographed = face(|i| {
+            let grain = (hash(i as i32, 0, 1) % 17) as u8;
+            [180 + grain, 140 + grain, 120 + grain, 0]
+        });
+        let photographed = Complexion::of(&photographed);
+        for x in 0..400 {
+            assert_eq!(
+                photographed.over([190, 150, 130], x, 40, 1.0),
+                [190, 150, 130]
+            );
+        }
+    }
 }

@@ -41,14 +41,28 @@ pub(crate) fn fractal(x: f32, y: f32, seed: u32) -> f32 {
         / 7.0
 }
 
-/// [`value`] that repeats after `period` cells both ways.
+/// A cell number that runs out of 0..period by less than a period, brought back.
+fn wrapped(i: i32, period: i32) -> i32 {
+    if i < 0 {
+        i + period
+    } else if i >= period {
+        i - period
+    } else {
+        i
+    }
+}
+
+/// [`value`] that repeats after `period` cells both ways. Places lie in the first period or just outside it.
 pub(crate) fn value_tiled(x: f32, y: f32, period: i32, seed: u32) -> f32 {
     let (xi, yi) = (below(x), below(y));
     let smooth = |t: f32| t * t * (3.0 - 2.0 * t);
     let (u, v) = (smooth(x - xi as f32), smooth(y - yi as f32));
     let at = |dx: i32, dy: i32| {
-        let wrapped = |i: i32| i.rem_euclid(period);
-        unit(hash(wrapped(xi + dx), wrapped(yi + dy), seed))
+        unit(hash(
+            wrapped(xi + dx, period),
+            wrapped(yi + dy, period),
+            seed,
+        ))
     };
     let low = at(0, 0) + (at(1, 0) - at(0, 0)) * u;
     let high = at(0, 1) + (at(1, 1) - at(0, 1)) * u;
@@ -64,7 +78,7 @@ pub(crate) struct Near {
     pub(crate) hash: u32,
 }
 
-/// See [`Near`]. Points stay within `spread` of their cells' middles: the less, the more even the pattern.
+/// See [`Near`]. Places lie in the first period or just outside it. Points stay within `spread` of their cells' middles: the less, the more even the pattern.
 pub(crate) fn cells(x: f32, y: f32, period: i32, spread: f32, seed: u32) -> Near {
     let (xi, yi) = (below(x), below(y));
     let (fx, fy) = (x - xi as f32 - 0.5, y - yi as f32 - 0.5);
@@ -74,11 +88,7 @@ pub(crate) fn cells(x: f32, y: f32, period: i32, spread: f32, seed: u32) -> Near
     };
     for dy in -1..=1 {
         for dx in -1..=1 {
-            let h = hash(
-                (xi + dx).rem_euclid(period),
-                (yi + dy).rem_euclid(period),
-                seed,
-            );
+            let h = hash(wrapped(xi + dx, period), wrapped(yi + dy, period), seed);
             let off = |bits: u32| ((bits & 0xFFFF) as f32 / 65536.0 - 0.5) * 2.0 * spread;
             let px = dx as f32 + off(h) - fx;
             let py = dy as f32 + off(h >> 16) - fy;

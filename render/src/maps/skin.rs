@@ -5,7 +5,7 @@
 use glam::{Vec2, vec2};
 use mouthpiece_rig::{ColourMap, Head};
 
-use super::complexion::{Complexion, unevenness};
+use super::complexion::Complexion;
 use super::image::{Image, root_of_linear};
 use super::landmarks::{Ground, Landmarks};
 use super::tone::{PLAIN, Tone, tone_at};
@@ -71,7 +71,7 @@ fn coloured(map: Option<&ColourMap>, tones: &Tones) -> Image {
             *texel = vivid([r, g, b]);
         }
     });
-    let complexion = Complexion::new(unevenness(&image));
+    let complexion = Complexion::of(&image);
     parallel_rows(&mut image.texels, width, |y, row| {
         let v = (y as f32 + 0.5) / height as f32;
         for (x, texel) in row.iter_mut().enumerate() {
@@ -86,14 +86,20 @@ fn coloured(map: Option<&ColourMap>, tones: &Tones) -> Image {
     image
 }
 
-/// The film's shoulder takes colour from what is bright, and skin is: it is given here beforehand.
+/// The film's shoulder takes colour from what is bright and makes it paler, and skin is bright: it is given its
+/// colour beforehand.
 fn vivid([r, g, b]: [u8; 3]) -> [u8; 4] {
-    const MORE: i32 = 22;
+    /// Percent.
+    const MORE: i32 = 24;
+    const DARKER: i32 = 3;
     let [r, g, b] = [r, g, b].map(i32::from);
     let grey = (3 * r + 5 * g + 2 * b) / 10;
     // Painted hair is dark and keeps its own.
-    let more = MORE * (grey - 70).clamp(0, 60) / 60;
-    let [r, g, b] = [r, g, b].map(|c| (c + (c - grey) * more / 100).clamp(0, 255) as u8);
+    let bright = (grey - 70).clamp(0, 60);
+    let [r, g, b] = [r, g, b].map(|c| {
+        let change = (c - grey) * MORE - c * DARKER;
+        (c + change * bright / 6000).clamp(0, 255) as u8
+    });
     [r, g, b, 0]
 }
 

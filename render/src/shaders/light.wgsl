@@ -12,7 +12,7 @@ override SHADOW_TAPS: u32 = 4u;
 // A world position in the shadow map: its place there and its depth. It is moved off the surface, so
 // that the surface does not shade itself.
 fn shadow_place(world: vec3<f32>, normal: vec3<f32>) -> vec3<f32> {
-    let off = world + normal * 2.0 + frame.key_dir.xyz * 1.5;
+    let off = world + normal * 1.3 + frame.key_dir.xyz * 0.9;
     let clip = frame.shadow_from_world * vec4(off, 1.0);
     return vec3(clip.xy * vec2(0.5, -0.5) + 0.5, clip.z);
 }

@@ -19,10 +19,13 @@ fn skin(in: SkinFragment) -> @location(0) vec4<f32> {
     let visible = shadow.x;
     let reached = shadow.y;
     // In the soft edge of a shadow red light has crept in under the skin.
-    let bleed = vec3(reached) + vec3(0.20, 0.02, 0.0) * (visible - visible * visible);
+    let bleed = vec3(reached) + vec3(0.13, 0.01, 0.0) * (visible - visible * visible);
     // Red light travels furthest, so it sees least of the bumps.
     let cosine = mix(vec3(bumped_cos), vec3(smooth_cos), vec3(0.62, 0.32, 0.22));
-    let matte = frame.key_colour.rgb * scattered(cosine, creep(in.shares.w)) * bleed + in.soft.xyz;
+    // What the vertices know of the other lamps, and what the bumps make of that.
+    let tilt = dot(n - smooth_n, frame.fill_dir.xyz + vec3(0.0, 0.4, 0.0));
+    let soft = in.soft.xyz * (1.0 + 0.8 * tilt);
+    let matte = frame.key_colour.rgb * scattered(cosine, creep(in.shares.w)) * bleed + soft;
 
     // Mirrored at grazing sight, more so the sleeker; scattered is what is left.
     let edge = grazing(max(dot(n, frame.toward_camera.xyz), 0.0));
@@ -45,9 +48,9 @@ fn skin(in: SkinFragment) -> @location(0) vec4<f32> {
     let oiled = (0.25 + 1.2 * oil) * min(9.0 * s.albedo.g, 1.0) * s.open;
     let strength = MIRROR * frame.half_key.w * oiled * (0.35 + 0.65 * in.shares.z);
     light += frame.key_colour.rgb * (strength * lobes * max(bumped_cos, 0.0) * reached);
-    light += vec3(in.normal.w * oiled);
+    light += vec3(in.normal.w * oiled * max(1.0 + 2.5 * tilt, 0.0));
     // Light from behind shines red through ears and nostrils.
     let behind = max(0.35 - dot(smooth_n, frame.rim_dir.xyz), 0.0);
-    light += frame.rim_colour.rgb * vec3(0.075, 0.013, 0.006) * (s.through * in.shares.z * (0.4 + behind));
+    light += frame.rim_colour.rgb * vec3(0.060, 0.011, 0.005) * (s.through * in.shares.z * (0.4 + behind));
     return developed(light);
 }
