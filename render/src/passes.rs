@@ -63,7 +63,10 @@ impl Renderer {
         pass.set_bind_group(0, &self.frame_group, &[]);
         pass.set_bind_group(1, &self.shadow_group, &[]);
         match view.shown {
-            Shown::Yardstick => return self.draw_plainly(&mut pass, mouth_open),
+            Shown::Yardstick => {
+                pass.set_bind_group(2, &self.maps.skin, &[]);
+                return self.draw_skin(&mut pass, Draw::Yardstick, &self.skin_indices);
+            }
             Shown::Face => self.draw_face(&mut pass, view.skin, mouth_open),
             Shown::Anatomy => {
                 for (material, buffers) in self.parts.iter().filter(|(m, _)| under_skin(*m)) {
@@ -109,20 +112,6 @@ impl Renderer {
         }
         if mouth_open && !self.skin.inside.is_empty() {
             self.draw_skin(pass, Draw::Inside, &self.inside_indices);
-        }
-    }
-
-    /// See [`Shown::Yardstick`].
-    fn draw_plainly(&self, pass: &mut wgpu::RenderPass<'_>, mouth_open: bool) {
-        pass.set_bind_group(2, &self.maps.skin, &[]);
-        self.draw_skin(pass, Draw::YardstickSkin, &self.skin_indices);
-        pass.set_pipeline(self.pipelines.get(Draw::YardstickPart));
-        let drawn = |m: Material| {
-            !matches!(m, Material::Bone | Material::Muscle | Material::Spring)
-                && (mouth_open || !in_mouth(m))
-        };
-        for (_, buffers) in self.parts.iter().filter(|(m, _)| drawn(*m)) {
-            draw_part(pass, buffers, 1);
         }
     }
 

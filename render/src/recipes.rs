@@ -120,17 +120,11 @@ const PART_SHADOW: Recipe = Recipe {
     ..SKIN_SHADOW
 };
 
-const YARDSTICK_SKIN: Recipe = Recipe {
-    vertex: "yardstick_skin",
+const YARDSTICK: Recipe = Recipe {
+    vertex: "yardstick_vertex",
     mesh: Mesh::Skin,
     ..solid("yardstick")
 };
-const YARDSTICK_PART: Recipe = Recipe {
-    vertex: "yardstick_part",
-    cull: None,
-    ..solid("yardstick")
-};
-
 /// Which bind groups a pipeline reads, from 0 on.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Groups {
@@ -168,8 +162,7 @@ pub(crate) enum Draw {
     Muscle,
     Spring,
     PartShadow,
-    YardstickSkin,
-    YardstickPart,
+    Yardstick,
 }
 
 impl Draw {
@@ -191,7 +184,7 @@ impl Draw {
         Self::Cavity,
         Self::Inside,
     ];
-    pub(crate) const COUNT: usize = Self::YardstickPart as usize + 1;
+    pub(crate) const COUNT: usize = Self::Yardstick as usize + 1;
 
     /// Whether it draws depth as the key lamp sees it, and no colour.
     pub(crate) fn is_shadow(self) -> bool {
@@ -224,8 +217,7 @@ impl Draw {
             Self::Backdrop => (BACKDROP, Groups::Bare),
             Self::Flash => (FLASH, Groups::Bare),
             Self::Picture => (PICTURE, Groups::Hung),
-            Self::YardstickSkin => (YARDSTICK_SKIN, Groups::Skin),
-            Self::YardstickPart => (YARDSTICK_PART, Groups::Skin),
+            Self::Yardstick => (YARDSTICK, Groups::Skin),
         }
     }
 }

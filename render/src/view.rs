@@ -98,7 +98,7 @@ pub enum Shown {
     Face,
     /// What lies under the skin: bones, teeth, eyes, and the muscles or springs among the head's parts.
     Anatomy,
-    /// The meshes of the face by one plain Blinn-Phong shader with four maps, no shadows and no backdrop: what the cost of
+    /// The mesh of the skin by one plain Blinn-Phong shader with four maps, no shadows and no backdrop: what the cost of
     /// a picture is compared with.
     Yardstick,
 }

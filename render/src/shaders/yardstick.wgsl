@@ -1,7 +1,7 @@
-// What the bench measures against: the same meshes as a game of 2010 would draw them. One pass, four maps (colour,
+// What the bench measures against: the same skin as a game of 2010 would draw them. One pass, four maps (colour,
 // mask, two bumps), Blinn and Phong's model under two lamps, no shadow; nothing that a picture is made with.
 
-#include "part"
+#include "frame"
 
 @group(2) @binding(0) var map_sampler: sampler;
 @group(2) @binding(1) var colour_map: texture_2d<f32>;
@@ -14,7 +14,6 @@ struct SkinVertex {
     @location(0) position: vec3<f32>,
     @location(1) normal: vec3<f32>,
     @location(2) uv: vec2<f32>,
-    @location(3) shares: vec4<f32>,
 }
 
 struct PlainFragment {
@@ -24,20 +23,11 @@ struct PlainFragment {
     @location(2) uv: vec2<f32>,
 }
 
-fn plain(world: vec3<f32>, normal: vec3<f32>, uv: vec2<f32>) -> PlainFragment {
-    return PlainFragment(frame.clip_from_world * vec4(world, 1.0), world, normal, uv);
-}
-
 @vertex
-fn yardstick_skin(in: SkinVertex) -> PlainFragment {
+fn yardstick_vertex(in: SkinVertex) -> PlainFragment {
     let at = frame.bodies[1] * vec4(in.position, 1.0);
-    return plain(at.xyz, (frame.bodies[1] * vec4(in.normal, 0.0)).xyz, in.uv);
-}
-
-@vertex
-fn yardstick_part(in: PartVertex) -> PlainFragment {
-    let at = placed(in, 0.0);
-    return plain(at.world, at.normal, in.uv);
+    let normal = frame.bodies[1] * vec4(in.normal, 0.0);
+    return PlainFragment(frame.clip_from_world * at, at.xyz, normal.xyz, in.uv);
 }
 
 fn lamp(n: vec3<f32>, v: vec3<f32>, l: vec3<f32>, colour: vec3<f32>, shine: f32) -> vec3<f32> {
