@@ -4,7 +4,7 @@
 //! as a whole: its volume is that of the closed surface of the skin's triangles, the same triangles on the
 //! bone under them (which the mandible carries in part), and walls between their rims. A region's volume,
 //! its gradient and so its energy are exact; the default model adds the gradient's part on the skin to its pass over
-//! the springs. Any model can be measured by it.
+//! the springs, the layered one asks for it ([`Cheek::measure`]). Any model can be measured by it.
 
 use glam::{Affine3A, Vec3, Vec3A};
 
@@ -102,6 +102,30 @@ impl Cheek {
             .map(|t| cone(at(t[0]), at(t[1]), at(t[2])))
             .sum();
         skin / 6.0 + self.walls(nodes, mandible, |_, _| {}) + self.of_bone(jaw_rad)
+    }
+
+    /// Its volume now, and how that changes with each of its nodes, mm²: left in their places of `gradient`.
+    pub(crate) fn measure(
+        &self,
+        nodes: &Nodes,
+        mandible: &Affine3A,
+        jaw_rad: f32,
+        gradient: &mut [Vec3A],
+    ) -> f32 {
+        for &i in &self.nodes {
+            gradient[i as usize] = Vec3A::ZERO;
+        }
+        let mut skin = 0.0;
+        for t in &self.triangles {
+            let [a, b, c] = t.map(|i| nodes.place[i as usize]);
+            let changes = [b.cross(c), c.cross(a), a.cross(b)];
+            skin += a.dot(changes[0]);
+            for (i, change) in t.iter().zip(changes) {
+                gradient[*i as usize] += change / 6.0;
+            }
+        }
+        let rim = |node: u32, change: Vec3A| gradient[node as usize] += change;
+        skin / 6.0 + self.walls(nodes, mandible, rim) + self.of_bone(jaw_rad)
     }
 
     /// The bone's part of the volume, mm³.

@@ -12,14 +12,18 @@
 //!
 //! What LEE leaves open, and what was chosen so that a face answers within some 50 ms and moves about as
 //! far as with the default model:
-//! - Masses: a column's mass is the head's (`TissueRecord`), half of it in the skin, half in the
-//!   fascia; all stiffnesses are per mass. Where a node's springs are too stiff for the step, it counts as heavier, just
-//!   so much that the step is stable ([`INERTIA`]): that slows only what vibrates faster than 70 times a second,
-//!   and changes nothing of where things come to rest. No controls can make it fly apart.
-//! - Step: half of the whole simulation's, 800 a second (at most 1/480 s). Semi-implicit Euler with implicit damping. (LEE calls
-//!   his explicit, but places take the new velocity there too, which is this; damping differs.)
+//! - Masses: skin and fascia of a column have each a third of the head's mass per vertex (`TissueRecord`,
+//!   [`LIGHTNESS`]); all stiffnesses are per mass. Where a node's springs are too stiff for the step, it counts as heavier,
+//!   just so much that the step is stable ([`INERTIA`]): that slows only what vibrates faster than some 200 times a
+//!   second, and changes nothing of where things come to rest. No controls can make it fly apart.
+//! - Step: the whole simulation's, cut in parts of [`LONGEST_S`] at most. Semi-implicit Euler, half of the damping before
+//!   the forces and half after. (LEE calls his explicit, but places take the new velocity there too, which is this;
+//!   damping differs.)
 //! - Damping: [`DAMPING`] for all nodes, on the velocity against the skull.
 //! - Units: one of the stiffness table is 1500 mm/s² (`springs`); `k1`, `k2`: `volume`; forces: `strength`.
+//!   The lightness multiplies them all.
+//! - Cheeks: LEE's volume force, which acts on skin and prism by prism, lets a full smile change them by 5 %; each is
+//!   held as a whole too, as in the default model ([`CHEEK`]).
 //! - Restoring force `h`: fascia nodes to their places at rest on skull or mandible (by the default model's
 //!   share), softly on cheeks and lips and firmly on nose and hairline, as that model's springs to bone; skin
 //!   nodes to their place over the fascia, since springs alone would let thin columns stay upside down.
@@ -47,28 +51,36 @@ use self::own::Ring;
 use self::springs::Springs;
 use self::vectors::Actuator;
 use self::volume::Prisms;
-use super::anatomy::{LID, bone_stiffness, mandible_share, sides};
+use super::anatomy::{LID, bone_depth, bone_stiffness, mandible_share, sides};
+use super::cheeks::{Cheek, cheeks};
 use super::{Drive, Nodes, Numbering, Tissue};
+use crate::simulation::STEP_S;
 use crate::{Control, Head, Muscle};
 
-/// Force per mass and velocity, 1/s: about critical for a cheek on its restoring force.
-const DAMPING: f32 = 100.0;
+/// How much lighter than a vertex of the default model its skin and its fascia are. All that pulls is per mass: this
+/// changes no place of rest, only how soon it is reached, and lets a lip be less than 10 ms behind its muscles.
+const LIGHTNESS: f32 = 3.0;
+/// Force per mass and velocity, 1/s: a third of what is critical for a column on its restoring force alone.
+const DAMPING: f32 = 90.0;
+/// What holds a cheek's volume, 1/s² and per mm².
+const CHEEK: f32 = 120_000.0;
 /// Restoring force of the fascia, 1/s²: everywhere, and its part of the default model's springs to bone.
-const RESTORE_SOFT: f32 = 9_500.0;
+const RESTORE_SOFT: f32 = 13_500.0;
 const RESTORE_BONE: f32 = 0.6;
 /// The same of the skin to its place over its fascia, 1/s².
 const RESTORE_OVER: f32 = 10_000.0;
 /// A lid's column is held at least so firmly, 1/s²: where the lid itself holds it less, at rest.
 const LID_LEAST: f32 = 15_000.0;
-/// A node counts as heavier by this share of its springs' stiffness times the step's square. With a quarter of
-/// twice the sum (Gershgorin's bound of what vibrates) the step would be just stable.
-const INERTIA: f32 = 0.35;
+/// A node counts as heavier by this share of its springs' stiffness times the square of a whole step's part. A quarter of
+/// twice the sum (Gershgorin's bound of what vibrates) would do for springs; prisms want more, or the wings of the nose
+/// never come to rest again. When steps are cut shorter, to see what that changes, masses stay: it is the same face.
+const INERTIA: f32 = 0.6;
 /// Nothing in a face is faster, mm/s: lips close with some 300.
 const FASTEST_MM_S: f32 = 2_000.0;
-/// Longest step that it is integrated by, s; a longer one is cut into equal parts.
-const LONGEST_S: f32 = 1.0 / 480.0;
+/// Longest step that it is integrated by, s: 800 a second do, and a little for rounding.
+const LONGEST_S: f32 = 1.0 / 790.0;
 /// No node goes farther from where bones carry it, mm: full smiles move the cheek by 15.
-const FARTHEST_MM: f32 = 18.0;
+const FARTHEST_MM: f32 = 17.0;
 /// The fascia comes no nearer to the bone than this share of its distance at rest.
 const CLEARANCE: f32 = 0.15;
 /// The lids aim past each other by this factor, since the skin round them holds them back.
@@ -114,6 +126,14 @@ pub(crate) struct Layered {
     over: f32,
     jawed: Vec<Jawed>,
     lids: Vec<LidHold>,
+    cheeks: [Cheek; 2],
+    /// How a cheek's volume changes with the skin's nodes, mm².
+    gradient: Vec<Vec3A>,
+    /// What forces per mass are multiplied by.
+    per_mass: f32,
+    /// Parts that a step is cut into; what share of its stiffness a node counts as heavier by, s².
+    parts: u32,
+    heavier: f32,
     springs: Springs,
     prisms: Prisms,
     actuators: Vec<Actuator>,
@@ -124,7 +144,9 @@ impl Layered {
     pub(crate) fn new(head: &Head, numbering: &Numbering) -> Self {
         let layers = Layers::new(head, numbering);
         let movable = numbering.movable;
-        let scale = head.tissue.stiffness_scale();
+        let scale = head.tissue.stiffness_scale() * LIGHTNESS;
+        let parts = (STEP_S / LONGEST_S).ceil();
+        let depth = bone_depth(head, &layers.skin[..movable]);
         let reference = numbering.of(&head.skin.reference);
         let side = numbering.of(&sides(head));
         let mut hold = vec![0.0_f32; head.skin.mesh.positions.len()];
@@ -170,7 +192,7 @@ impl Layered {
                 Some(LidHold {
                     node: numbering.moving(lid.vertex)?,
                     lid: k,
-                    stiffness: LID * lid.hold * lid.hold,
+                    stiffness: LID * LIGHTNESS * lid.hold * lid.hold,
                 })
             })
             .collect();
@@ -196,6 +218,11 @@ impl Layered {
             over: RESTORE_OVER * scale,
             jawed,
             lids,
+            cheeks: cheeks(head, numbering, &depth),
+            gradient: vec![Vec3A::ZERO; movable],
+            per_mass: scale,
+            parts: parts as u32,
+            heavier: INERTIA * (STEP_S / parts).powi(2),
         }
     }
 
@@ -236,9 +263,25 @@ impl Layered {
         }
     }
 
+    /// Forces that press the cheeks back to their volume.
+    fn press(&mut self, drive: &Drive<'_>) {
+        if drive.volume <= 0.0 {
+            return;
+        }
+        let jaw = drive.state[Control::Jaw];
+        for cheek in &self.cheeks {
+            let volume = cheek.measure(&self.skin, &drive.mandible, jaw, &mut self.gradient);
+            let excess = (volume - cheek.rest) / cheek.rest.max(1.0);
+            let push = -CHEEK * self.per_mass * drive.volume * excess;
+            for i in cheek.nodes.iter().map(|i| *i as usize) {
+                self.force[i][0] += (self.gradient[i] * push).extend(0.0);
+            }
+        }
+    }
+
     /// Forces of muscles and lids.
     fn pull(&mut self, drive: &Drive<'_>) {
-        let scale = drive.muscle_stiffness * drive.head.tissue.stiffness_scale();
+        let scale = drive.muscle_stiffness * self.per_mass;
         for actuator in &self.actuators {
             let [a, b] = actuator
                 .muscles
@@ -284,7 +327,7 @@ impl Layered {
             for layer in 0..2 {
                 let home = Vec3A::from_vec4(self.rest[i][layer]);
                 let target = centre + turn.mul_vec3a(home - centre);
-                let least = (LID_LEAST - hold.stiffness).max(0.0);
+                let least = (LID_LEAST * LIGHTNESS - hold.stiffness).max(0.0);
                 let back = (target.extend(0.0) - self.place[i][layer]) * hold.stiffness
                     + (self.rest[i][layer] - self.place[i][layer]) * least;
                 self.force[i][layer] += back.with_w(hold.stiffness + least);
@@ -292,41 +335,49 @@ impl Layered {
         }
     }
 
-    /// Semi-implicit Euler; the rim stays.
-    fn integrate(&mut self, step_s: f32, damping: f32) {
-        let heavier = INERTIA * step_s * step_s;
-        let advance = |force: Vec4, place: &mut Vec3A, velocity: &mut Vec3A| {
+    /// Velocities half a step after the places; the rim stays.
+    fn accelerate(&mut self, step_s: f32, damping: f32) {
+        // Half of the damping before the forces, half after: then the step's length does not tell in how it damps.
+        let half = 0.5 * damping * step_s;
+        let heavier = self.heavier;
+        let advance = |force: Vec4, velocity: &mut Vec3A| {
             let mass = (force.w * heavier).max(1.0);
             let force = Vec3A::from_vec4(force);
-            *velocity = (*velocity * mass + force * step_s) / (mass + damping * step_s);
+            *velocity = (*velocity * (mass - half) + force * step_s) / (mass + half);
             *velocity = velocity.clamp_length_max(FASTEST_MM_S);
-            *place += *velocity * step_s;
         };
         for i in 0..self.movable {
             let [skin, fascia] = self.force[i];
-            advance(skin, &mut self.skin.place[i], &mut self.skin.velocity[i]);
+            advance(skin, &mut self.skin.velocity[i]);
+            // Nothing presses fascia on that has come near the bone: it slides.
+            let inwards = if self.above_bone(i) <= 0.0 {
+                self.out[i] * fascia.dot(self.out[i]).min(0.0)
+            } else {
+                Vec4::ZERO
+            };
+            advance(fascia - inwards, &mut self.fascia.velocity[i]);
+        }
+    }
 
-            // Fascia that has come near the bone slides on it.
-            let normal = Vec3A::from_vec4(self.out[i]);
-            let place = &mut self.fascia.place[i];
-            let gap =
-                |p: Vec3A| (p - Vec3A::from_vec4(self.skull[i])).dot(normal) - self.clearance[i];
-            let inwards = Vec3A::from_vec4(fascia).dot(normal).min(0.0);
-            let met = gap(*place) <= 0.0;
-            let kept = if met { normal * inwards } else { Vec3A::ZERO };
-            advance(
-                fascia - kept.extend(0.0),
-                place,
-                &mut self.fascia.velocity[i],
-            );
+    /// How far a node's fascia is from where bone stops it, mm.
+    fn above_bone(&self, i: usize) -> f32 {
+        let over = self.fascia.place[i] - Vec3A::from_vec4(self.skull[i]);
+        over.dot(Vec3A::from_vec4(self.out[i])) - self.clearance[i]
+    }
+
+    /// Places after a step.
+    fn drift(&mut self, step_s: f32) {
+        for i in 0..self.movable {
             let home = Vec3A::from_vec4(self.home[i]);
-            *place = home + (*place - home).clamp_length_max(FARTHEST_MM);
             let over = home + Vec3A::from_vec4(self.rest[i][0] - self.rest[i][1]);
-            let skin = &mut self.skin.place[i];
-            *skin = over + (*skin - over).clamp_length_max(FARTHEST_MM);
-            let deep = gap(*place).min(0.0);
+            for (nodes, home) in [(&mut self.skin, over), (&mut self.fascia, home)] {
+                let place = nodes.place[i] + nodes.velocity[i] * step_s;
+                nodes.place[i] = home + (place - home).clamp_length_max(FARTHEST_MM);
+            }
+            let deep = self.above_bone(i).min(0.0);
             if deep < 0.0 {
-                *place -= normal * deep;
+                let normal = Vec3A::from_vec4(self.out[i]);
+                self.fascia.place[i] -= normal * deep;
                 let velocity = &mut self.fascia.velocity[i];
                 *velocity -= normal * velocity.dot(normal).min(0.0);
             }
@@ -336,16 +387,17 @@ impl Layered {
 
 impl Tissue for Layered {
     fn step(&mut self, drive: &Drive<'_>) {
-        let parts = (drive.step_s / LONGEST_S).ceil().max(1.0);
         let part = Drive {
-            step_s: drive.step_s / parts,
+            step_s: drive.step_s / self.parts as f32,
             ..*drive
         };
-        for _ in 0..parts as usize {
+        for _ in 0..self.parts {
             self.read(&part);
             self.resist(part.volume);
+            self.press(&part);
             self.pull(&part);
-            self.integrate(part.step_s, DAMPING * part.damping);
+            self.accelerate(part.step_s, DAMPING * part.damping);
+            self.drift(part.step_s);
         }
     }
 
@@ -378,6 +430,7 @@ impl Tissue for Layered {
             + 3 * size_of_val(&*self.place)
             + 4 * size_of_val(&*self.skull)
             + 2 * size_of_val(&*self.restore)
+            + size_of_val(&*self.gradient)
             + self.springs.bytes()
             + self.prisms.bytes()
     }
