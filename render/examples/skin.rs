@@ -1,7 +1,7 @@
 //! Pictures that show the skin: the reference head in the poses whose wrinkles differ most.
 //! `cargo run --release -p mouthpiece-render --example skin -- FOLDER [WxH] [TIER] [physical|blinn-phong] [NAME …]`
 //! draws them (all, or those named); `… skin -- --join BEFORE_FOLDER AFTER_FOLDER OUT.png NAME …` lays the named
-//! ones side by side, before above after, at half their size: docs/skin.png.
+//! ones side by side, before above after: docs/skin.png.
 
 use std::error::Error;
 use std::fs::File;
@@ -125,7 +125,7 @@ fn settled(head: &Arc<Head>, pulls: &[(&str, f32)]) -> Result<KeyFrame, Box<dyn 
     Ok(frame)
 }
 
-/// Pictures of two folders above each other, at half their size.
+/// The middle of pictures of two folders above each other.
 fn join(before: &Path, after: &Path, out: &Path, names: &[String]) -> Result<(), Box<dyn Error>> {
     let mut sheet = Picture {
         size: (0, 0),
@@ -134,23 +134,18 @@ fn join(before: &Path, after: &Path, out: &Path, names: &[String]) -> Result<(),
     for (row, folder) in [before, after].into_iter().enumerate() {
         for (column, name) in names.iter().enumerate() {
             let part = load(&folder.join(format!("{name}.png")))?;
-            let (width, height) = (part.size.0 / 2, part.size.1 / 2);
+            // As much as a head takes up.
+            let (left, top) = (part.size.0 / 5, part.size.1 / 8);
+            let (width, height) = (part.size.0 * 3 / 5, part.size.1 * 3 / 4);
             if sheet.pixels.is_empty() {
                 sheet.size = (width * names.len(), height * 2);
                 sheet.pixels = vec![255; sheet.size.0 * sheet.size.1 * 4];
             }
             for y in 0..height {
-                for x in 0..width {
-                    for c in 0..4 {
-                        let at = |dx: usize, dy: usize| {
-                            let (x, y) = (2 * x + dx, 2 * y + dy);
-                            u16::from(part.pixels[(y * part.size.0 + x) * 4 + c])
-                        };
-                        let mean = (at(0, 0) + at(1, 0) + at(0, 1) + at(1, 1) + 2) / 4;
-                        let (x, y) = (column * width + x, row * height + y);
-                        sheet.pixels[(y * sheet.size.0 + x) * 4 + c] = mean as u8;
-                    }
-                }
+                let from = ((top + y) * part.size.0 + left) * 4;
+                let to = ((row * height + y) * sheet.size.0 + column * width) * 4;
+                sheet.pixels[to..to + width * 4]
+                    .copy_from_slice(&part.pixels[from..from + width * 4]);
             }
         }
     }
@@ -174,6 +169,7 @@ fn save(path: &Path, picture: &Picture) -> Result<(), Box<dyn Error>> {
     let file = BufWriter::new(File::create(path)?);
     let mut png = png::Encoder::new(file, picture.size.0 as u32, picture.size.1 as u32);
     png.set_color(png::ColorType::Rgba);
+    png.set_compression(png::Compression::High);
     png.set_source_srgb(png::SrgbRenderingIntent::Perceptual);
     png.write_header()?.write_image_data(&picture.pixels)?;
     Ok(())

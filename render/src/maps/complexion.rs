@@ -19,7 +19,7 @@ pub(super) struct Complexion {
 
 /// By how much more a painted face's zones (ruddy, pale, bluish) differ from its mean: at the size of a window paint
 /// as soft as the head's is looks like one colour.
-const ZONES: f32 = 0.38;
+const ZONES: f32 = 0.30;
 /// What differs from the mean by more than this, in bytes, is no zone of skin but a brow or the lips' red.
 const ZONE_MOST: f32 = 26.0;
 
@@ -71,8 +71,8 @@ fn taken_at(x: usize, y: usize) -> [f32; 3] {
     let pigment = pigment + 0.22 * speckle;
     [
         0.010 * blood + 0.040 * pigment,
-        0.080 * blood + 0.062 * pigment,
-        0.068 * blood + 0.080 * pigment,
+        0.070 * blood + 0.058 * pigment,
+        0.060 * blood + 0.070 * pigment,
     ]
 }
 

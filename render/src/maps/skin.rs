@@ -90,8 +90,8 @@ fn coloured(map: Option<&ColourMap>, tones: &Tones) -> Image {
 /// colour beforehand.
 fn vivid([r, g, b]: [u8; 3]) -> [u8; 4] {
     /// Percent.
-    const MORE: i32 = 24;
-    const DARKER: i32 = 3;
+    const MORE: i32 = 13;
+    const DARKER: i32 = 4;
     let [r, g, b] = [r, g, b].map(i32::from);
     let grey = (3 * r + 5 * g + 2 * b) / 10;
     // Painted hair is dark and keeps its own.

@@ -51,6 +51,6 @@ fn skin(in: SkinFragment) -> @location(0) vec4<f32> {
     light += vec3(in.normal.w * oiled * max(1.0 + 2.5 * tilt, 0.0));
     // Light from behind shines red through ears and nostrils.
     let behind = max(0.35 - dot(smooth_n, frame.rim_dir.xyz), 0.0);
-    light += frame.rim_colour.rgb * vec3(0.060, 0.011, 0.005) * (s.through * in.shares.z * (0.4 + behind));
+    light += frame.rim_colour.rgb * vec3(0.045, 0.009, 0.005) * (s.through * in.shares.z * (0.4 + behind));
     return developed(light);
 }
