@@ -15,8 +15,8 @@ use crate::tissue::{Drive, Layered, Numbering, Springs, Tissue, bone_depth, chee
 use crate::tongue::Tongue;
 use crate::{Control, Controls, Head, KeyFrame, TissueModel, jaw};
 
-/// Length of a step in ticks: 400 steps a second.
-pub const STEP_TICKS: i64 = 120;
+/// Length of a step in ticks: 240 steps a second.
+pub const STEP_TICKS: i64 = 200;
 /// The same in seconds.
 pub(crate) const STEP_S: f32 = STEP_TICKS as f32 / TICK_RATE as f32;
 /// How fast components follow their controls (critically damped), 1/s.
@@ -203,7 +203,12 @@ impl Simulation {
                 volume: self.volume,
                 step_s,
             };
-            self.model.tissue_mut().step(&drive);
+            let (contact, lips) = (&mut self.contact, self.contacts && self.lip_contact);
+            self.model.tissue_mut().step(&drive, &mut |skin, step_s| {
+                if lips {
+                    contact.brake(skin, step_s);
+                }
+            });
             self.follow(&wanted, step_s);
             self.pose();
             if self.contacts {
@@ -212,6 +217,7 @@ impl Simulation {
                     &self.mandible,
                     &self.state,
                     self.lip_contact,
+                    step_s,
                 );
             }
         }

@@ -23,7 +23,7 @@ pub struct TissueRecord {
     /// Which model.
     #[serde(default)]
     pub model: TissueModel,
-    /// Mass of every vertex that moves, g. All have the same: on a mesh graded to 1.5 mm at the lips,
+    /// Mass of a vertex that moves, g. All have the same, but at the mouth's corners: on a mesh graded to 1.5 mm at the lips,
     /// masses by area would make the smallest so light that steps had to be about five times shorter.
     ///
     /// The papers give no masses. The face that moves on the reference head is 566 cm² of skin in

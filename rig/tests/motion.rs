@@ -15,14 +15,15 @@ fn left_alone_and_undamped_it_keeps_its_energy() {
         (Control::ZygomaticusMajor, 0.1),
         (Control::FrontalisInner, 0.1),
     ]);
-    // Let go of at once, a second for it to spread over all modes: the skin is where the muscles had it, they are at rest.
+    // Let go of at once, three seconds for it to spread over all modes: the skin is where the muscles had it, they are at
+    // rest.
     let mut let_go = settled(&mut free(TissueModel::Springs), &smile, SECOND);
     let_go.state = Controls::default();
     let_go.state_rate = Controls::default();
     let mut simulation = free(TissueModel::Springs);
     simulation.set_damping(0.0);
     assert!(simulation.restore(&let_go));
-    settled(&mut simulation, &Controls::default(), SECOND);
+    settled(&mut simulation, &Controls::default(), 3 * SECOND);
     let mut means = Vec::new();
     for _ in 0..100 {
         let mut sum = 0.0;

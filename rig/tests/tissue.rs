@@ -45,7 +45,7 @@ fn settled(simulation: &mut Simulation, controls: &Controls, steps: usize) -> Ke
 /// The head as it stands when nothing has moved it: contact may have settled it a little.
 fn undisturbed(model: TissueModel) -> KeyFrame {
     let mut simulation = Simulation::new(Arc::clone(head(model)));
-    settled(&mut simulation, &Controls::default(), 960)
+    settled(&mut simulation, &Controls::default(), TWO_SECONDS)
 }
 
 /// The farthest that a vertex is from where it was; not a number if one of them has none.
@@ -60,6 +60,9 @@ fn farthest(was: &KeyFrame, frame: &KeyFrame) -> f32 {
         |most, d| if d.is_nan() { f32::NAN } else { most.max(d) },
     )
 }
+
+/// Steps in the time that skin has to come to rest.
+const TWO_SECONDS: usize = (2 * TICK_RATE / STEP_TICKS) as usize;
 
 /// Numbers that look random, 0 to 1, the same each time.
 struct Noise(u64);
@@ -103,7 +106,7 @@ fn survives_anything(model: TissueModel, seconds: i64) {
             "{model:?}: a vertex went {far} mm after {change} changes"
         );
     }
-    let frame = settled(&mut simulation, &Controls::default(), 960);
+    let frame = settled(&mut simulation, &Controls::default(), TWO_SECONDS);
     let left = farthest(&rest, &frame);
     assert!(left < 0.05, "{model:?}: {left} mm from rest after 2 s");
     let skin = &head.skin;
@@ -174,7 +177,7 @@ fn a_rewind_repeats_itself_to_the_bit() {
         assert!(first == second, "{model:?}");
         // A frame that knows nothing of what is inside leaves that at rest.
         assert!(simulation.restore(&head(model).rest_frame()));
-        let again = settled(&mut simulation, &Controls::default(), 960);
+        let again = settled(&mut simulation, &Controls::default(), TWO_SECONDS);
         assert!(farthest(&undisturbed(model), &again) < 0.01, "{model:?}");
     }
 }

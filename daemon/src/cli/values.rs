@@ -4,6 +4,7 @@ use std::fmt;
 use std::str::FromStr;
 
 use clap::builder::{PossibleValue, PossibleValuesParser};
+use mouthpiece_rig::{STEP_TICKS, TICK_RATE};
 
 /// Width and height in pixels.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -54,8 +55,8 @@ pub struct Fps {
 }
 
 impl Fps {
-    /// The highest rate: the simulation steps at 400 a second, so more shows nothing new.
-    const HZ_MAX: u32 = 400;
+    /// The highest rate: that of the simulation's steps, so more shows nothing new.
+    const HZ_MAX: u32 = (TICK_RATE / STEP_TICKS) as u32;
 
     /// When frame `k` is due, in ticks of 48 kHz, rounded down.
     pub fn ticks(self, k: u64) -> i64 {

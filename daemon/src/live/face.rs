@@ -21,11 +21,11 @@ use super::time::{Flow, ns_from_ticks, seconds};
 
 /// How far the simulation runs ahead of what is heard: covers for a thread that is not let run.
 pub const LEAD_TICKS: i64 = TICK_RATE / 4;
-/// Ticks between key frames: 100 a second, of which linear interpolation shows nothing.
-pub const FRAME_TICKS: i64 = 480;
+/// Ticks between key frames: 120 a second, of which linear interpolation shows nothing.
+pub const FRAME_TICKS: i64 = 400;
 const _: () = assert!(FRAME_TICKS % STEP_TICKS == 0);
-/// Key frames that can be gone back to: a second, four times the lead.
-const KEPT: usize = 120;
+/// Key frames that can be gone back to: more than a second, four times the lead.
+const KEPT: usize = 144;
 /// Further behind than this the past is skipped, not caught up with: nobody saw it.
 const BEHIND_TICKS: i64 = TICK_RATE;
 /// Naps while far enough ahead: half a key frame at least, so that naps do not add up to spinning.

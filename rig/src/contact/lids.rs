@@ -5,7 +5,6 @@ use glam::{Quat, Vec3A, Vec4};
 
 use super::drawn::{Drawn, Limit};
 use super::four::{FOUR, Four, List, Places, bits};
-use crate::simulation::STEP_S;
 use crate::tissue::Nodes;
 use crate::{Control, Controls, Eye, Head};
 
@@ -76,18 +75,18 @@ impl Lids {
         }
     }
 
-    pub(super) fn resolve(&mut self, skin: &mut Nodes, state: &Controls) {
+    pub(super) fn resolve(&mut self, skin: &mut Nodes, state: &Controls, step_s: f32) {
         let gaze = Quat::from_rotation_y(state[Control::GazeYaw])
             * Quat::from_rotation_x(-state[Control::GazePitch]);
         let axis = gaze * Vec3A::Z;
         for ball in &mut self.eyes {
-            ball.hold(skin, axis);
+            ball.hold(skin, axis, step_s);
         }
     }
 }
 
 impl Ball {
-    fn hold(&mut self, skin: &mut Nodes, axis: Vec3A) {
+    fn hold(&mut self, skin: &mut Nodes, axis: Vec3A, step_s: f32) {
         self.near.clear();
         for (i, four) in self.fours.iter().enumerate() {
             let at = four.at(&skin.place);
@@ -98,7 +97,7 @@ impl Ball {
         // All are pushed outwards: what was free stays free.
         let mut near = std::mem::take(&mut self.near);
         for _ in 0..PASSES {
-            near.keep(|points, some| self.push(points, some, skin, axis));
+            near.keep(|points, some| self.push(points, some, skin, axis, step_s));
         }
         self.near = near;
     }
@@ -126,7 +125,14 @@ impl Ball {
     /// Pushes points out of the ball, each for itself; bits of those that were so deep that they are to be looked
     /// at again.
     #[inline]
-    fn push(&self, points: [usize; FOUR], some: u32, skin: &mut Nodes, axis: Vec3A) -> u32 {
+    fn push(
+        &self,
+        points: [usize; FOUR],
+        some: u32,
+        skin: &mut Nodes,
+        axis: Vec3A,
+        step_s: f32,
+    ) -> u32 {
         let drawn = points.map(|point| self.drawn.at(point, &skin.place) - self.centre);
         let out = Places::new(drawn);
         let square = out.x * out.x + out.y * out.y + out.z * out.z;
@@ -145,7 +151,7 @@ impl Ball {
             skin.place[node] += normal * depth;
             // Only the speed that brought it there goes: no rebound, and what is pressed lies still.
             let inwards = skin.velocity[node].dot(normal).min(0.0);
-            skin.velocity[node] -= normal * inwards.max(depth * (-1.0 / STEP_S));
+            skin.velocity[node] -= normal * inwards.max(-depth / step_s);
         }
         inside & depth.cmpgt(Vec4::splat(DONE_MM)).bitmask()
     }

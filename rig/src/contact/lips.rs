@@ -3,12 +3,16 @@
 //! Both lips' columns were built over one another and the muscles move them sideways together; what is left of a
 //! sideways shift is made up for along the rows, so that both are cut by one plane. There the upper lip is a line of
 //! segments; a point inside is pushed square to its segment, so that a lip neither climbs nor sticks.
+//!
+//! A step does it twice: before lips move, of the speed that brings them together only so much is left as they are apart,
+//! so that no step presses them into each other; after, what overlap is left goes.
 
 use super::drawn::Limit;
 use super::four::bits;
 use super::profile::{Cut, LANES, Lane, Profile, ROWS};
+use glam::Vec3A;
+
 use crate::Head;
-use crate::simulation::STEP_S;
 use crate::tissue::Nodes;
 
 /// A point is pushed by so much of its way out, by more than all of it: what is drawn follows less than vertices do,
@@ -60,21 +64,39 @@ impl Lips {
         }
     }
 
-    pub(super) fn resolve(&mut self, skin: &mut Nodes) {
+    /// Slows lips that would overlap after `step_s`.
+    pub(super) fn brake(&mut self, skin: &mut Nodes, step_s: f32) {
+        if self.touch(skin, step_s) {
+            self.carry(&mut skin.velocity);
+        }
+    }
+
+    /// Pushes lips apart that overlap.
+    pub(super) fn push(&mut self, skin: &mut Nodes) {
+        if self.touch(skin, 0.0) {
+            self.carry(&mut skin.place);
+        }
+    }
+
+    /// Adds up what keeps lips apart: pushes, or, with a time that they are to move for, brakes; whether there is any.
+    fn touch(&mut self, skin: &Nodes, step_s: f32) -> bool {
         let Some([upper, lower]) = &mut self.pair else {
-            return;
+            return false;
         };
-        if !find_near(&mut self.near, &mut self.zones, upper, lower, skin) {
-            return;
+        if !find_near(&mut self.near, &mut self.zones, upper, lower, skin, step_s) {
+            return false;
         }
         draw(&self.near, &self.zones, upper, skin);
         draw(&self.near, &self.zones, lower, skin);
         for (block, near) in self.near.iter_mut().enumerate() {
-            *near = *near && press(upper, lower, block);
+            *near = *near && press(upper, lower, block, step_s);
         }
-        for (block, _) in self.near.iter().enumerate().filter(|(_, t)| **t) {
-            upper.carry(block, skin);
-            lower.carry(block, skin);
+        self.near.contains(&true)
+    }
+
+    fn carry(&mut self, nodes: &mut [Vec3A]) {
+        for lip in self.pair.iter_mut().flatten() {
+            lip.carry(&self.near, nodes);
         }
     }
 }
@@ -86,12 +108,13 @@ fn find_near(
     upper: &Profile,
     lower: &Profile,
     skin: &Nodes,
+    step_s: f32,
 ) -> bool {
     near.fill(false);
     // The corners are one: only what lies between them is pushed.
     for column in 1..upper.columns - 1 {
-        let [low, high] = upper.bounds(column, skin);
-        let [lowest, highest] = lower.bounds(column, skin);
+        let [low, high] = upper.bounds(column, skin, step_s);
+        let [lowest, highest] = lower.bounds(column, skin, step_s);
         zones[column] = [low.y - AWAY_MM, highest.y + AWAY_MM];
         if highest.y + NEAR_MM > low.y && highest.z + NEAR_MM > low.z && lowest.z < high.z + NEAR_MM
         {
@@ -133,6 +156,8 @@ const SETS: usize = (ROWS - 1).div_ceil(TOGETHER);
 /// The upper lip's segments in a block, cut.
 struct Segments {
     at: Cut,
+    /// Time that the lips are to move for, s.
+    step_s: f32,
     /// From one end to the other, and what is worked out of it once.
     ey: [Lane; ROWS - 1],
     ez: [Lane; ROWS - 1],
@@ -145,11 +170,12 @@ struct Segments {
 }
 
 impl Segments {
-    fn new(at: Cut) -> Self {
+    fn new(at: Cut, speed: [[Lane; ROWS]; 2], step_s: f32) -> Self {
         let none = [Lane::ZERO; ROWS - 1];
         let far = [Lane::MAX; SETS];
         let mut all = Self {
             at,
+            step_s,
             ey: none,
             ez: none,
             per_ez: none,
@@ -169,7 +195,8 @@ impl Segments {
                 .recip();
             (all.ey[s], all.ez[s]) = (ey, ez);
             let (set, i) = (s / TOGETHER, s % TOGETHER);
-            all.low[set].as_mut()[i] = y[s].min(y[s + 1]).min_element();
+            let low = |s: usize| y[s].min(y[s] + speed[0][s] * step_s);
+            all.low[set].as_mut()[i] = low(s).min(low(s + 1)).min_element();
             all.back[set].as_mut()[i] = z[s].min(z[s + 1]).min_element();
             all.front[set].as_mut()[i] = z[s].max(z[s + 1]).max_element();
         }
@@ -191,7 +218,7 @@ impl Segments {
 
 /// Adds up what pushes the lower lip's points of a block out of the upper lip's segments; whether anything
 /// does.
-fn press(upper: &mut Profile, lower: &mut Profile, block: usize) -> bool {
+fn press(upper: &mut Profile, lower: &mut Profile, block: usize, step_s: f32) -> bool {
     let mut touched = false;
     let columns = upper.columns;
     // The corners are one: only what lies between them is pushed; lanes past the end neither.
@@ -206,10 +233,11 @@ fn press(upper: &mut Profile, lower: &mut Profile, block: usize) -> bool {
     for z in above.z.iter_mut().chain(&mut below.z) {
         *z -= base;
     }
-    let segments = Segments::new(above);
+    let segments = Segments::new(above, [upper.speed.y[block], upper.speed.z[block]], step_s);
     for r in 0..ROWS {
         let (y, z) = (below.y[r], below.z[r]);
-        let near = segments.near(y.max_element(), z.min_element(), z.max_element());
+        let high = y.max(y + lower.speed.y[block][r] * step_s);
+        let near = segments.near(high.max_element(), z.min_element(), z.max_element());
         for s in bits(near) {
             touched |= segment(&segments, [y, z], upper, lower, block, [r, s], own);
         }
@@ -231,37 +259,39 @@ fn segment(
     let (ey, ez, per) = (segments.ey[s], segments.ez[s], segments.per[s]);
     let t = (pz - segments.at.z[s]) * segments.per_ez[s];
     let over = py - segments.at.y[s] - ey * t - Lane::splat(SLOP_MM);
-    let inside = t.cmpge(Lane::ZERO) & t.cmplt(Lane::ONE) & over.cmpgt(Lane::ZERO);
-    if !inside.any() {
-        return false;
-    }
-    let over = Lane::select(inside, over, Lane::ZERO);
-    let f = over * ez * per;
-    let inside = inside & (over * f * ez).cmplt(Lane::splat(DEEPEST_MM * DEEPEST_MM));
-    let m = Lane::select(inside, own, Lane::ZERO);
-    // Speeds along the segment's normal, where they bring the lips together. No rebound: only the speed that made
-    // the overlap goes, so that lips that press come to lie still.
-    let t = Lane::select(inside, t, Lane::ZERO);
+    let over_it = t.cmpge(Lane::ZERO) & t.cmplt(Lane::ONE);
+    let t = Lane::select(over_it, t, Lane::ZERO);
     let speed = |v: &[Lane; ROWS]| v[s] + (v[s + 1] - v[s]) * t;
     let vy = lower.speed.y[block][r] - speed(&upper.speed.y[block]);
     let vz = lower.speed.z[block][r] - speed(&upper.speed.z[block]);
+    // Over the segment's length: the way out along its normal, and the speed that brings the lips together.
+    let f = over * ez * per;
     let k = (vy * ez - vz * ey) * per;
-    let limit = f.abs() * (1.0 / STEP_S);
-    let k = Lane::select((k * ez).cmpgt(Lane::ZERO), k, Lane::ZERO).clamp(-limit, limit);
-    let share = t * m;
-    let half = (0.5 * PUSH) * m;
-    let push = [half * f * ez, -half * f * ey];
-    let brake = [0.5 * m * k * ez, -0.5 * m * k * ey];
-    lower.push.y[block][r] -= push[0];
-    lower.push.z[block][r] -= push[1];
-    lower.brake.y[block][r] -= brake[0];
-    lower.brake.z[block][r] -= brake[1];
+    let step_s = segments.step_s;
+    let meet = ((f + k * step_s) * ez).cmpgt(Lane::ZERO);
+    let deepest = Lane::splat(DEEPEST_MM * DEEPEST_MM);
+    let inside = over_it & meet & (over * f * ez).cmplt(deepest);
+    if !inside.any() {
+        return false;
+    }
+    // No rebound: a brake leaves the speed that brings them together, and none that takes them apart.
+    let apart = over.cmple(Lane::ZERO);
+    let change = if step_s > 0.0 {
+        let brake = Lane::select(apart, k + f / step_s, k);
+        Lane::select((brake * ez).cmpgt(Lane::ZERO), brake, Lane::ZERO)
+    } else {
+        f * PUSH
+    };
+    let m = Lane::select(inside, own, Lane::ZERO);
+    let half = 0.5 * m * Lane::select(inside, change, Lane::ZERO);
+    let change = [half * ez, -half * ey];
+    lower.change.y[block][r] -= change[0];
+    lower.change.z[block][r] -= change[1];
     lower.weight[block][r] += m;
+    let share = t * m;
     for (s, share) in [(s, m - share), (s + 1, share)] {
-        upper.push.y[block][s] += share * push[0];
-        upper.push.z[block][s] += share * push[1];
-        upper.brake.y[block][s] += share * brake[0];
-        upper.brake.z[block][s] += share * brake[1];
+        upper.change.y[block][s] += share * change[0];
+        upper.change.z[block][s] += share * change[1];
         upper.weight[block][s] += share;
     }
     true

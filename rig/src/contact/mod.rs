@@ -10,9 +10,10 @@
 //! | `field` | a row of teeth as a height field |
 //! | `lids` | lids outside the eyeballs and their corneas |
 //!
-//! HABER and HEADSHOP leave contact out; here it is what makes /m/ and /p/ look pressed. It is resolved on positions
-//! after each step and on velocities without rebound, for the surface as it is drawn. Everything slides: only
-//! what points into the other is taken away. Nothing is remembered from step to step, so a rewind repeats itself.
+//! HABER and HEADSHOP leave contact out; here it is what makes /m/ and /p/ look pressed. It is resolved for the
+//! surface as it is drawn: on positions after each step and on velocities, without rebound; lips, which are pressed hard,
+//! are slowed before they move. Everything slides: only what points into the other is taken away. Nothing is remembered
+//! from step to step, so a rewind repeats itself.
 
 mod drawn;
 mod field;
@@ -52,18 +53,25 @@ impl Contact {
         }
     }
 
-    /// Resolves everything; `lips` is false while calibrating, where targets past contact count.
+    /// Slows lips that are about to meet, before a step's velocities lead to its end.
+    pub(crate) fn brake(&mut self, skin: &mut Nodes, step_s: f32) {
+        self.lips.brake(skin, step_s);
+    }
+
+    /// Keeps lips, teeth, lids and eyeballs out of each other at the end of a step; `lips` is false while calibrating,
+    /// where targets past contact count.
     pub(crate) fn resolve(
         &mut self,
         skin: &mut Nodes,
         mandible: &Affine3A,
         state: &Controls,
         lips: bool,
+        step_s: f32,
     ) {
         if lips {
-            self.lips.resolve(skin);
+            self.lips.push(skin);
         }
-        self.teeth.resolve(skin, mandible);
-        self.lids.resolve(skin, state);
+        self.teeth.resolve(skin, mandible, step_s);
+        self.lids.resolve(skin, state, step_s);
     }
 }

@@ -48,10 +48,11 @@ pub(super) struct Profile {
     pub at: Sheet,
     /// Speeds of the same; x is not used.
     pub speed: Sheet,
-    /// What contact adds up; x is not used.
-    pub push: Sheet,
-    pub brake: Sheet,
+    /// What contact adds up, and of how many; x is not used.
+    pub change: Sheet,
     pub weight: Vec<[Lane; ROWS]>,
+    /// The same by level, with an empty block at each end.
+    sums: Vec<[Sums; LEVELS]>,
 }
 
 #[derive(Clone, Copy, Debug)]
@@ -122,9 +123,9 @@ impl Profile {
             twin,
             at: Sheet::new(blocks),
             speed: Sheet::new(blocks),
-            push: Sheet::new(blocks),
-            brake: Sheet::new(blocks),
+            change: Sheet::new(blocks),
             weight: vec![[Lane::ZERO; ROWS]; blocks],
+            sums: vec![[NOTHING; LEVELS]; blocks + 2],
         })
     }
 
@@ -133,12 +134,13 @@ impl Profile {
     }
 
     /// The corner of the box round a column that is the least in all coordinates, and the greatest: as far as its
-    /// points moved along with their nodes.
+    /// points moved along with their nodes, at the end of the step.
     #[inline]
-    pub(super) fn bounds(&self, column: usize, skin: &Nodes) -> [Vec3A; 2] {
+    pub(super) fn bounds(&self, column: usize, skin: &Nodes, step_s: f32) -> [Vec3A; 2] {
         let (mut low, mut high) = (Vec3A::MAX, Vec3A::MIN);
         for level in &self.levels[column] {
-            let at = skin.place[level.node as usize] + level.offset;
+            let node = level.node as usize;
+            let at = skin.place[node] + skin.velocity[node] * step_s + level.offset;
             (low, high) = (low.min(at), high.max(at));
         }
         [low, high]
@@ -185,10 +187,8 @@ impl Profile {
                 rows[a + 1] = 0.5 * (rows[a] + rows[b]);
             }
         }
-        for sums in [&mut self.push, &mut self.brake] {
-            sums.y[block] = [Lane::ZERO; ROWS];
-            sums.z[block] = [Lane::ZERO; ROWS];
-        }
+        self.change.y[block] = [Lane::ZERO; ROWS];
+        self.change.z[block] = [Lane::ZERO; ROWS];
         self.weight[block] = [Lane::ZERO; ROWS];
     }
 
@@ -217,17 +217,52 @@ impl Profile {
         cut
     }
 
-    /// Carries a block's sums to the nodes: each vertex moves by the mean of what it and the rows beside it are
-    /// pushed by.
-    pub(super) fn carry(&self, block: usize, skin: &mut Nodes) {
+    /// Carries what contact adds up in these blocks to the nodes' places or velocities: each vertex changes by the mean
+    /// of what it and the rows beside it are changed by, spread over the columns beside it.
+    pub(super) fn carry(&mut self, touched: &[bool], nodes: &mut [Vec3A]) {
+        let on = |block: usize| touched.get(block).copied().unwrap_or(false);
+        let around = |block: usize| {
+            [
+                block.checked_sub(1).is_some_and(on),
+                on(block),
+                on(block + 1),
+            ]
+        };
+        for block in 0..self.blocks() {
+            let sums = if on(block) {
+                self.sums(block)
+            } else {
+                [NOTHING; LEVELS]
+            };
+            self.sums[block + 1] = sums;
+        }
+        for block in (0..self.blocks()).filter(|b| around(*b).contains(&true)) {
+            for level in 0..LEVELS {
+                let three = [block, block + 1, block + 2].map(|b| &self.sums[b][level]);
+                if three.iter().all(|sums| sums[WEIGHT] == Lane::ZERO) {
+                    continue;
+                }
+                let [y, z, weight] = std::array::from_fn(|i| spread(three.map(|t| t[i])));
+                let per = weight.max(Lane::ONE).recip();
+                let [y, z] = [y * per, z * per].map(|v| v.to_array());
+                for lane in bits(weight.cmpgt(Lane::ZERO).bitmask()) {
+                    let column = block * LANES + lane;
+                    if let Some(levels) = self.levels.get(column) {
+                        nodes[levels[level].node as usize] += vec3a(0.0, y[lane], z[lane]);
+                    }
+                }
+            }
+        }
+    }
+
+    /// By level, what its own row and those beside it in a block add up to.
+    fn sums(&self, block: usize) -> [Sums; LEVELS] {
         let sheets = [
-            &self.push.y[block],
-            &self.push.z[block],
-            &self.brake.y[block],
-            &self.brake.z[block],
+            &self.change.y[block],
+            &self.change.z[block],
             &self.weight[block],
         ];
-        let mut sums = [[Lane::ZERO; 5]; LEVELS];
+        let mut sums = [NOTHING; LEVELS];
         for (level, sums) in sums.iter_mut().enumerate() {
             let row = row(level);
             for (sum, rows) in sums.iter_mut().zip(sheets) {
@@ -253,24 +288,22 @@ impl Profile {
                 }
             }
         }
-        for (level, [y, z, vy, vz, weight]) in sums.into_iter().enumerate() {
-            let mask = weight.cmpgt(Lane::ZERO).bitmask();
-            if mask == 0 {
-                continue;
-            }
-            let per = weight.max(Lane::ONE).recip();
-            let [y, z] = [y * per, z * per].map(|v| v.to_array());
-            let [vy, vz] = [vy * per, vz * per].map(|v| v.to_array());
-            for lane in bits(mask) {
-                let column = block * LANES + lane;
-                if let Some(levels) = self.levels.get(column) {
-                    let node = levels[level].node as usize;
-                    skin.place[node] += vec3a(0.0, y[lane], z[lane]);
-                    skin.velocity[node] += vec3a(0.0, vy[lane], vz[lane]);
-                }
-            }
-        }
+        sums
     }
+}
+
+/// What contact adds up for a level: changes along y and z, and how many they come from.
+type Sums = [Lane; 3];
+const WEIGHT: usize = 2;
+const NOTHING: Sums = [Lane::ZERO; 3];
+
+/// A block's values, spread, by those before and after it: half of each stays with its column. Pressed lips have many ways
+/// to fold, column by column, and which they took would hang on the step.
+#[inline]
+fn spread([before, own, after]: [Lane; 3]) -> Lane {
+    let left = vec4(before.w, own.x, own.y, own.z);
+    let right = vec4(own.y, own.z, own.w, after.x);
+    own * 0.5 + (left + right) * 0.25
 }
 
 /// Rows of a block where they pass a plane across the lip.

@@ -14,7 +14,6 @@ use super::profile::BOW;
 use crate::Head;
 use crate::mesh::LIP_LEVELS;
 use crate::mesh::lip_level::{CONTACT, CREST, INNER};
-use crate::simulation::STEP_S;
 use crate::tissue::Nodes;
 
 /// Passes of pushing, and the share of its way out that a point is pushed in one: points share vertices.
@@ -72,16 +71,18 @@ impl Teeth {
         }
     }
 
-    pub(super) fn resolve(&mut self, skin: &mut Nodes, mandible: &Affine3A) {
+    pub(super) fn resolve(&mut self, skin: &mut Nodes, mandible: &Affine3A, step_s: f32) {
         let upper = self.upper.as_ref().map(|field| Row {
             field,
             frames: None,
             rather_ahead_mm: RATHER_AHEAD_MM,
+            per_step: step_s.recip(),
         });
         let lower = self.lower.as_ref().map(|field| Row {
             field,
             frames: Some([mandible.inverse(), *mandible]),
             rather_ahead_mm: RATHER_AHEAD_MM,
+            per_step: step_s.recip(),
         });
         self.upper_lip.hold([upper, None], &mut self.near, skin);
         let upper = upper.map(|row| Row {
@@ -200,7 +201,7 @@ impl Points {
                 skin.place[node] += push;
                 // Only the speed that brought it there goes: no rebound, and what is pressed lies still.
                 let inwards = skin.velocity[node].dot(normal).min(0.0);
-                skin.velocity[node] -= normal * inwards.max(depth * (-1.0 / STEP_S));
+                skin.velocity[node] -= normal * inwards.max(-depth * row.per_step);
             }
             again | u32::from(depth > DONE_MM) << i
         })
@@ -214,6 +215,8 @@ struct Row<'a> {
     /// From the head to where the row was at rest, and back; none of the upper row.
     frames: Option<[Affine3A; 2]>,
     rather_ahead_mm: f32,
+    /// 1 over the length of the step, 1/s.
+    per_step: f32,
 }
 
 impl Row<'_> {

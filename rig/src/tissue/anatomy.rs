@@ -20,7 +20,10 @@ const BONE_SOFT: f32 = 900.0;
 /// What is left of that stiffness where the forehead's skin slides over the bone.
 const FOREHEAD: f32 = 0.12;
 /// Of a lid's hold on its margin.
-pub(super) const LID: f32 = 90_000.0;
+pub(super) const LID: f32 = 60_000.0;
+/// The mouth's left corner on the reference head, and how much heavier it is than other skin.
+const CORNER: Vec3 = Vec3::new(20.0, -34.0, 103.0);
+const KNOT: f32 = 0.8;
 /// Where on a lip or beside it a vertex lies: above the slit, below it, or neither.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Side {
@@ -91,6 +94,13 @@ pub(super) fn mandible_share(p: Vec3, side: Side) -> f32 {
     // Down the throat and back towards the ear the skin leaves the jaw again.
     let throat = ramp(-96.0, -70.0, p.y) * ramp(14.0, 66.0, p.z);
     share * throat
+}
+
+/// By how much a vertex there is heavier than others. The corners of the mouth are: under them lies the modiolus, the
+/// knot of eight muscles. There the shortest edges are folded side by side, too, and what swings fastest sets the step.
+pub(super) fn heavier(p: Vec3) -> f32 {
+    let corner = Vec3::new(CORNER.x.copysign(p.x), CORNER.y, CORNER.z);
+    KNOT * ramp(12.0, 5.0, p.distance(corner))
 }
 
 /// Stiff on forehead, nose and cheek bones, soft on cheeks and lips.

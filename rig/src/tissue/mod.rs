@@ -58,8 +58,9 @@ pub(crate) struct Drive<'a> {
 /// A model of soft tissue. Its nodes begin with those of the skin that move, in the order of the
 /// [`Numbering`] that it was made with; what it has inside comes apart from them.
 pub(crate) trait Tissue: Debug {
-    /// One step under `drive`. Allocates nothing.
-    fn step(&mut self, drive: &Drive<'_>);
+    /// One step under `drive`. Between the new velocities and the places that they lead to, `meet` may change the
+    /// skin; it is told how long, s, they lead there. Allocates nothing.
+    fn step(&mut self, drive: &Drive<'_>, meet: &mut dyn FnMut(&mut Nodes, f32));
     /// The skin's nodes.
     fn skin(&self) -> &Nodes;
     /// The same, for contact and for a rewind.

@@ -4,7 +4,7 @@ use std::sync::{Arc, OnceLock};
 
 use glam::Vec3;
 use mouthpiece_rig::lip_level::{BORDER, CONTACT};
-use mouthpiece_rig::{Articulation, Controls, Simulation, measure};
+use mouthpiece_rig::{Articulation, Controls, STEP_TICKS, Simulation, TICK_RATE, measure};
 
 use super::surface::Drawn;
 use super::{SENTENCE_HZ, head, posed, postures, pressed, sentence, settled};
@@ -46,7 +46,7 @@ fn random_mouths_do_not_pass_their_lips() {
 
 #[test]
 fn a_spoken_sentence_does_not_pass_its_lips() {
-    const STEPS: usize = 480 / SENTENCE_HZ;
+    const STEPS: usize = (TICK_RATE / STEP_TICKS) as usize / SENTENCE_HZ;
     let mut simulation = Simulation::new(Arc::clone(head()));
     let (mut worst, mut shut) = ((0.0_f32, Vec3::ZERO, 0), 0);
     for (i, controls) in sentence().iter().enumerate() {

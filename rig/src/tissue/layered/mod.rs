@@ -386,7 +386,7 @@ impl Layered {
 }
 
 impl Tissue for Layered {
-    fn step(&mut self, drive: &Drive<'_>) {
+    fn step(&mut self, drive: &Drive<'_>, meet: &mut dyn FnMut(&mut Nodes, f32)) {
         let part = Drive {
             step_s: drive.step_s / self.parts as f32,
             ..*drive
@@ -397,6 +397,7 @@ impl Tissue for Layered {
             self.press(&part);
             self.pull(&part);
             self.accelerate(part.step_s, DAMPING * part.damping);
+            meet(&mut self.skin, part.step_s);
             self.drift(part.step_s);
         }
     }

@@ -33,7 +33,7 @@ fn prisms_change(muscle: Muscle, changed: impl FnOnce(&mut Layered)) -> f32 {
         step_s: STEP_S,
     };
     for _ in 0..240 {
-        tissue.step(&drive);
+        tissue.step(&drive, &mut |_, _| ());
     }
     (tissue.prisms.volume(&tissue.place, inside) / rest - 1.0).abs()
 }

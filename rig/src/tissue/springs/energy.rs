@@ -2,7 +2,7 @@
 
 use glam::Vec3A;
 
-use super::simd::MOST;
+use super::simd::{MOST, SOFTEN};
 use super::{BLEND, EDGE, SLACK, STOP, SpringPass, Springs, VOLUME};
 use crate::Control;
 use crate::tissue::Drive;
@@ -20,7 +20,7 @@ impl Springs {
                 return;
             }
             let (before, after) = (self.nodes.velocity[i], after.nodes.velocity[i]);
-            energy += 0.5 * before.as_dvec3().dot(after.as_dvec3());
+            energy += 0.5 * before.as_dvec3().dot(after.as_dvec3()) / f64::from(node.light);
             for (other, rest) in &node.edges {
                 let length = place(*other).distance(place(i));
                 // Half of it, where the edge is met again at its other end.
@@ -58,14 +58,43 @@ impl Springs {
 /// Work done on an edge of length `rest` to make it `length`: the kernel's `length * stress(strain)`, integrated
 /// over the length, which is its stress over Green's strain.
 fn edge(length: f64, rest: f64) -> f64 {
-    let (slack, blend) = (f64::from(SLACK), f64::from(BLEND));
+    let [slack, blend, most, soften] = [SLACK, BLEND, MOST, SOFTEN].map(f64::from);
     let strain = 0.5 * (length * length / (rest * rest) - 1.0);
-    let torn = (strain - f64::from(MOST)).max(0.0);
+    let torn = (strain - most).max(0.0);
     let strain = strain - torn;
-    let near = strain.abs().min(blend);
-    let past = strain.abs() - near;
-    let odd = near.powi(3) / (6.0 * blend) + 0.5 * past * (blend + past);
-    let even = 0.5 * strain * strain;
-    let work = 0.5 * ((1.0 + slack) * even + (1.0 - slack) * odd.copysign(strain));
+    // The strain, softened, over the strain; then what of it is beyond the parabola round rest.
+    let softened = |e: f64| e * e * (0.5 - soften * e / 3.0);
+    let sign = 1.0_f64.copysign(strain);
+    let edge = 0.5 * (1.0 - (1.0 - sign * 4.0 * soften * blend).sqrt()) / soften;
+    let near = if sign > 0.0 {
+        strain.min(edge)
+    } else {
+        strain.max(edge)
+    };
+    let parabola =
+        near.powi(3) / 3.0 - soften * near.powi(4) / 2.0 + soften * soften * near.powi(5) / 5.0;
+    let past = sign * (softened(strain) - softened(near)) - 0.5 * blend * (strain - near);
+    let odd = parabola / (2.0 * blend) + past;
+    let work = 0.5 * ((1.0 + slack) * softened(strain) + (1.0 - slack) * odd);
     f64::from(EDGE) * rest * rest * (work + torn * SpringPass::stress(strain))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn an_edge_stores_what_it_is_stretched_with() {
+        let (rest, step) = (1.3, 1e-4);
+        for i in 0..120 {
+            let length = rest * (0.6 + 0.01 * f64::from(i));
+            let slope = (edge(length + step, rest) - edge(length - step, rest)) / (2.0 * step);
+            let strain = 0.5 * (length * length / (rest * rest) - 1.0);
+            let pull = f64::from(EDGE) * length * SpringPass::stress(strain);
+            assert!(
+                (slope - pull).abs() < 1e-3 * f64::from(EDGE),
+                "{length}: {slope}, {pull}"
+            );
+        }
+    }
 }

@@ -7,8 +7,8 @@
 //! - The cheeks keep their volume (see `cheeks`).
 //!
 //! All of it are forces in one set of equations of motion, integrated by Verlet leapfrog with damping
-//! per mass. All nodes have the same mass: on a mesh graded to 1 mm at the lips, masses by area
-//! would force steps five times shorter. Nodes outside the face are fixed (`anatomy::moves`).
+//! per mass. All nodes have the same mass, but at the mouth's corners: on a mesh graded to 1 mm at the lips, masses by
+//! area would force steps five times shorter. Nodes outside the face are fixed (`anatomy::moves`).
 //!
 //! | module | holds |
 //! |---|---|
@@ -28,7 +28,7 @@ mod simd;
 
 use glam::{Affine3A, Vec3A};
 
-use super::anatomy::{EDGE, bone_depth, bone_stiffness, mandible_share, sides};
+use super::anatomy::{EDGE, bone_depth, bone_stiffness, heavier, mandible_share, sides};
 use super::cheeks::{Cheek, cheeks};
 use super::holds::{Attachment, attachments};
 use super::{Drive, Nodes, Numbering, Tissue};
@@ -55,7 +55,7 @@ const SLIP_PER_DEPTH: f32 = 0.5;
 const STOP: f32 = 36_000.0;
 const YIELD: f32 = 0.85;
 /// Of a cheek's volume, 1/s² and per mm².
-const VOLUME: f32 = 120_000.0;
+const VOLUME: f32 = 30_000.0;
 
 /// The springs of a head, and the skin's nodes.
 #[derive(Clone, Debug)]
@@ -67,6 +67,8 @@ pub(crate) struct Springs {
     mesh: Mesh,
     places: Places,
     lids: Lids,
+    /// 1 over each node's mass.
+    light: Vec<f32>,
     cheeks: [Cheek; 2],
     /// How a cheek's volume changes with its nodes.
     gradient: Vec<Vec3A>,
@@ -87,6 +89,7 @@ impl Springs {
             .map(|i| {
                 let (inwards, depth_mm) = depth[i];
                 Ground {
+                    heavier: heavier(reference[i]),
                     rest: rest[i],
                     soft: bone_stiffness(reference[i], side[i]),
                     firm: FIRM,
@@ -137,6 +140,7 @@ impl Springs {
                 let of = |i: &u32| mesh.gradient_of(*i as usize).map(|g| g as u32);
                 cheek.nodes.iter().filter_map(of).collect()
             }),
+            light: ground.iter().map(|g| (1.0 + g.heavier).recip()).collect(),
             springs: numbering.edges.len() + ground.len() + holds.len() + lids.len(),
             per_mass: head.tissue.stiffness_scale(),
             nodes,
@@ -178,8 +182,10 @@ impl Springs {
             &kick,
         );
         let Nodes { place, velocity } = &mut self.nodes;
+        let light = &self.light;
         self.lids.pull(drive, |i, target, stiffness| {
-            velocity[i] += (target - place[i]) * (stiffness * kick.step * kick.keep);
+            let speed = stiffness * kick.step * kick.keep * light[i];
+            velocity[i] += (target - place[i]) * speed;
         });
         if drive.volume > 0.0 {
             self.press(drive, &kick);
@@ -205,15 +211,17 @@ impl Springs {
             let excess = (volume - cheek.rest) / cheek.rest.max(1.0);
             let push = -VOLUME * drive.volume * excess * kick.step * kick.keep;
             for (&i, &g) in cheek.nodes.iter().zip(at) {
-                self.nodes.velocity[i as usize] += self.gradient[g as usize] * push;
+                let i = i as usize;
+                self.nodes.velocity[i] += self.gradient[g as usize] * (push * self.light[i]);
             }
         }
     }
 }
 
 impl Tissue for Springs {
-    fn step(&mut self, drive: &Drive<'_>) {
+    fn step(&mut self, drive: &Drive<'_>, meet: &mut dyn FnMut(&mut Nodes, f32)) {
         self.accelerate(drive);
+        meet(&mut self.nodes, drive.step_s);
         simd::drift(self.isa, &mut self.nodes, drive.step_s);
     }
 

@@ -2,7 +2,7 @@
 
 use glam::{Vec3, Vec3A};
 
-use super::simd::{self, Ground, Isa, MOST, Mesh, Neighbour};
+use super::simd::{self, Ground, Isa, MOST, Mesh, Neighbour, SOFTEN};
 use super::{BLEND, SLACK};
 use crate::tissue::Nodes;
 use crate::tissue::nodes::morton;
@@ -22,8 +22,9 @@ impl SpringPass {
     /// squared length has gained): the law that the pass computes, here in f64.
     #[must_use]
     pub fn stress(strain: f64) -> f64 {
-        let [slack, blend, most] = [SLACK, BLEND, MOST].map(f64::from);
+        let [slack, blend, most, soften] = [SLACK, BLEND, MOST, SOFTEN].map(f64::from);
         let strain = strain.min(most);
+        let strain = strain - soften * strain * strain;
         let (size, near) = (strain.abs(), strain.abs().min(blend));
         let odd = size - near + near * near / (2.0 * blend);
         0.5 * ((1.0 + slack) * strain + (1.0 - slack) * odd)

@@ -48,7 +48,10 @@ fn square<L: Lanes>(v: [L; 3]) -> L {
 
 /// Strain beyond which the stress of an edge grows no more (its force still does, with its length): 1.3 times its
 /// length at rest. Without that, edges that are torn at would grow stiffer than the step can follow.
-pub(in crate::tissue::springs) const MOST: f32 = 0.35;
+pub(in crate::tissue::springs) const MOST: f32 = 0.4;
+/// What a strain loses by its square. Under Green's strain alone an edge would pull the harder per mm the longer it is;
+/// so it pulls the same or less, and nothing swings faster than at rest.
+pub(in crate::tissue::springs) const SOFTEN: f32 = 1.1;
 
 /// How an edge answers to strain, Green's: half of what its squared length has gained, which needs no root. With its
 /// stiffness when stretched, with `slack` of it pressed together, and a parabola round rest that joins the two
@@ -60,6 +63,7 @@ struct Give<L> {
     blend: L,
     curve: L,
     most: L,
+    soften: L,
 }
 
 impl<L: Lanes> Give<L> {
@@ -72,12 +76,14 @@ impl<L: Lanes> Give<L> {
             blend: L::splat(blend),
             curve: L::splat(odd * 0.5 / blend),
             most: L::splat(MOST),
+            soften: L::splat(-SOFTEN),
         }
     }
 
     #[inline(always)]
     fn stress(&self, strain: L) -> L {
         let strain = strain.min(self.most);
+        let strain = strain.mul(strain).mul_add(self.soften, strain);
         let size = strain.abs();
         let near = size.min(self.blend);
         let straight = size.mul_add(self.odd, strain.mul(self.even));
@@ -223,9 +229,10 @@ pub(super) fn kick<L: Lanes>(
                 height = normal[axis].mul_add(off[axis], height);
             }
             let stop = zero.sub(height).max(zero).mul(bone);
+            let light = L::load(&block.light, part);
             for axis in AXES {
                 force[axis] = force[axis].sub(off[axis].mul(stiff));
-                force[axis] = normal[axis].mul_add(stop, force[axis]);
+                force[axis] = normal[axis].mul_add(stop, force[axis]).mul(light);
             }
             L::kick(&mut nodes.velocity, first, force, kick.step, kick.keep);
         }

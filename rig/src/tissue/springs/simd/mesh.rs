@@ -46,6 +46,8 @@ pub(super) struct Block {
     pub slip: [f32; BLOCK],
     pub hold: [f32; BLOCK],
     pub share: [f32; BLOCK],
+    /// 1 over the mass.
+    pub light: [f32; BLOCK],
     /// Its rows, ties, and, where it has any, rows of `corners`.
     pub rows: [u32; 2],
     pub ties: [u32; 2],
@@ -58,9 +60,11 @@ pub(super) struct Block {
     pub jawed: bool,
 }
 
-/// What a node stands on, per unit of mass.
+/// What a node weighs and stands on.
 #[derive(Clone, Copy, Debug, Default)]
 pub(in crate::tissue::springs) struct Ground {
+    /// By how much its mass is greater than the head's mass of a vertex, which is the unit.
+    pub heavier: f32,
     /// Where it is at rest, mm.
     pub rest: Vec3,
     /// Stiffness of its spring to the bone, and what is added once it has stretched by `slip_mm`.
@@ -107,6 +111,8 @@ pub(in crate::tissue::springs) struct Laid<'a> {
     pub firm: f32,
     pub slip: f32,
     pub share: f32,
+    /// 1 over its mass.
+    pub light: f32,
 }
 
 impl Laid<'_> {
@@ -245,6 +251,7 @@ impl Mesh {
             firm: lanes(&|g| g.firm),
             slip: lanes(&|g| g.slip_mm),
             share: lanes(&|g| g.share),
+            light: lanes(&|g| (1.0 + g.heavier).recip()),
             hold,
             rows: [rows, self.rows.len() as u32],
             ties: [ties, self.ties.len() as u32],
@@ -305,6 +312,7 @@ impl Mesh {
                     firm: block.firm[l],
                     slip: block.slip[l],
                     share: block.share[l],
+                    light: block.light[l],
                 };
                 tell(b * BLOCK + l, &node);
             }

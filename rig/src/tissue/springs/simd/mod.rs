@@ -26,7 +26,7 @@ mod mesh;
 mod portable;
 
 use glam::Vec3A;
-pub(super) use kernel::{Kick, MOST};
+pub(super) use kernel::{Kick, MOST, SOFTEN};
 pub(super) use mesh::{Ground, Hold, Mesh, Neighbour};
 
 use crate::tissue::Nodes;
