@@ -101,6 +101,7 @@ fn pipeline(
         ("SHADOW_TAPS", f64::from(detail.shadow_taps)),
         ("SAMPLES", f64::from(samples)),
         ("GRAIN", f64::from(u8::from(detail.grain))),
+        ("ALL_LAMPS", f64::from(u8::from(detail.all_lamps))),
     ];
     // A constant that a shader does not declare is an error, so each gets its own.
     let constants: Vec<(&str, f64)> = all

@@ -59,6 +59,8 @@ pub(crate) struct Detail {
     pub(crate) grain_map: u32,
     /// Whether the skin's fine structure is drawn.
     pub(crate) grain: bool,
+    /// Whether all lamps see the skin's bumps, or only the key lamp.
+    pub(crate) all_lamps: bool,
     /// Side of the eye map in texels.
     pub(crate) eye_map: u32,
     /// Side of the key light's shadow map in texels.
@@ -97,6 +99,7 @@ impl Tier {
                 wrinkle_map: 512,
                 grain_map: 256,
                 grain: false,
+                all_lamps: false,
                 eye_map: 256,
                 hair_map: 512,
                 shadow_map: 256,
@@ -113,6 +116,7 @@ impl Tier {
                 wrinkle_map: 1024,
                 grain_map: 512,
                 grain: true,
+                all_lamps: false,
                 eye_map: 512,
                 hair_map: 768,
                 shadow_map: 384,
@@ -129,6 +133,7 @@ impl Tier {
                 wrinkle_map: 1024,
                 grain_map: 1024,
                 grain: true,
+                all_lamps: true,
                 eye_map: 1024,
                 hair_map: 1024,
                 shadow_map: 448,
