@@ -9,7 +9,7 @@ use std::io::{BufReader, BufWriter};
 use std::path::Path;
 use std::sync::Arc;
 
-use mouthpiece_render::{Camera, Gpu, Offscreen, SkinModel, Tier, View};
+use mouthpiece_render::{Background, Camera, Gpu, Offscreen, SkinModel, Tier, View};
 use mouthpiece_rig::{Control, Controls, Head, KeyFrame, STEP_TICKS, Simulation, TICK_RATE};
 
 /// Name, where from, and what contracts.
@@ -93,6 +93,8 @@ fn main() -> Result<(), Box<dyn Error>> {
     for (name, camera, pulls) in POSES.iter().filter(|(name, ..)| wanted(name)) {
         let view = View {
             camera: *camera,
+            // No grain of a wall: the files are smaller.
+            background: Background::Plain([92, 98, 104]),
             skin,
             ..View::default()
         };

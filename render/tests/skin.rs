@@ -14,9 +14,15 @@ fn ready() -> Option<(Head, Offscreen)> {
             return None;
         }
     };
-    let head = Head::reference().unwrap();
-    let offscreen = Offscreen::new(&gpu, &head, SIZE, Tier::Medium).unwrap();
-    Some((head, offscreen))
+    let ready = || -> Result<_, Box<dyn std::error::Error>> {
+        let head = Head::reference()?;
+        let offscreen = Offscreen::new(&gpu, &head, SIZE, Tier::Medium)?;
+        Ok((head, offscreen))
+    };
+    match ready() {
+        Ok(ready) => Some(ready),
+        Err(error) => panic!("the reference head cannot be drawn: {error}"),
+    }
 }
 
 /// The head at rest whose muscles say that they pull: the wrinkles alone differ.
@@ -31,11 +37,13 @@ fn pulled(head: &Head, pulls: &[(Control, f32)]) -> KeyFrame {
 /// Mean difference of two pictures, of 255, within some pixels of a landmark moved by mm.
 fn change(head: &Head, a: &[u8], b: &[u8], name: &str, off: glam::Vec3) -> f32 {
     const REACH: i32 = 12;
-    let number = head
+    let Some(number) = head
         .landmarks
         .iter()
         .position(|l| l.layer == Layer::Skin && l.name == name)
-        .unwrap();
+    else {
+        panic!("the reference head has no landmark {name}");
+    };
     let place = head.landmark_places()[number] + off;
     let framing = Extent::of(head).frame(Camera::Front, SIZE);
     let clip = framing.clip_from_world.project_point3(place);

@@ -15,14 +15,14 @@ use super::{CHART_HEIGHT, CHART_MM, parallel_rows, ramp};
 
 /// Side of the tile on the skin, mm.
 pub(crate) const TILE_MM: f32 = 40.0;
-/// Cells between deep furrows along the tile's side (1.3 mm each) and between shallow ones.
-const CELLS: i32 = 31;
-const FINE_CELLS: i32 = 67;
+/// Cells between deep furrows along the tile's side (0.85 mm each) and between shallow ones.
+const CELLS: i32 = 47;
+const FINE_CELLS: i32 = 103;
 /// Depth of furrows and pores, and height of the slow unevenness, mm. Furrows of a young face are 0.03 to
 /// 0.08 mm deep.
-const FURROW_MM: f32 = 0.055;
-const FINE_FURROW_MM: f32 = 0.020;
-const PORE_MM: f32 = 0.075;
+const FURROW_MM: f32 = 0.034;
+const FINE_FURROW_MM: f32 = 0.014;
+const PORE_MM: f32 = 0.070;
 const UNEVEN_MM: f32 = 0.16;
 
 /// What is known of a place of the tile.
@@ -65,17 +65,17 @@ pub(super) fn slope(slope: f32) -> u8 {
 /// The synthetic skin at a place of the tile, 0..1 both ways.
 fn at(t: Vec2) -> Place {
     // Furrows are not straight.
-    let bend = |seed| value_tiled(t.x * 48.0, t.y * 48.0, 48, seed) - 0.5;
+    let bend = |seed| value_tiled(t.x * 60.0, t.y * 60.0, 60, seed) - 0.5;
     let p = t * CELLS as f32 + vec2(bend(3), bend(4)) * 0.45;
     let near = cells(p.x, p.y, CELLS, 0.42, 11);
     let [d1, d2, d3] = near.distance;
-    let furrow = 1.0 - ramp(0.02, 0.20, d2 - d1);
+    let furrow = 1.0 - ramp(0.02, 0.27, d2 - d1);
     let q = t * FINE_CELLS as f32 + vec2(bend(5), bend(6)) * 0.6;
     let fine = cells(q.x, q.y, FINE_CELLS, 0.45, 12).distance;
     let fine_furrow = 1.0 - ramp(0.02, 0.30, fine[1] - fine[0]);
     // A pore where three cells meet, at every other such place.
-    let meet = 1.0 - ramp(0.03, 0.17, d3 - d1);
-    let chosen = ramp(0.35, 0.75, value_tiled(t.x * 40.0, t.y * 40.0, 40, 17));
+    let meet = 1.0 - ramp(0.04, 0.28, d3 - d1);
+    let chosen = ramp(0.40, 0.75, value_tiled(t.x * 46.0, t.y * 46.0, 46, 17));
     let pore = meet * chosen;
     let slow = |cells: i32, seed| {
         let at = t * cells as f32;

@@ -10,7 +10,7 @@ use super::wrinkles::Wrinkles;
 use super::{CHART_MM, parallel_rows};
 
 /// Depth at which a wrinkle's floor is as dark as it gets, mm.
-const DEEP_MM: f32 = 0.55;
+const DEEP_MM: f32 = 0.68;
 
 /// Gloss, bump intensity, translucence; the wrinkles' floors: above one half those of the first layer, below of the second.
 pub(super) fn paint(tones: &Tones, wrinkles: &Wrinkles, width: usize) -> Image {

@@ -144,7 +144,7 @@ fn surface(in: SkinFragment) -> Surface {
     var pore = 0.0;
     if GRAIN {
         let grain = textureSample(grain_map, tile_sampler, in.fine.xy);
-        slope += (grain.xy - FLAT) * (2.6 * mask.g);
+        slope += (grain.xy - FLAT) * (3.0 * mask.g);
         furrow = grain.z * mask.g;
         pore = grain.w * texel.a;
     }
@@ -158,7 +158,7 @@ fn surface(in: SkinFragment) -> Surface {
     var out: Surface;
     out.normal = normalize(in.normal.xyz - across * slope.x - up * slope.y);
     // In a fold light bounces from skin to skin and comes out redder.
-    let kept = 1.0 - floor * vec3(0.26, 0.40, 0.44) - pore * vec3(0.22, 0.34, 0.38) - furrow * vec3(0.045, 0.07, 0.08);
+    let kept = 1.0 - floor * vec3(0.25, 0.36, 0.40) - pore * vec3(0.24, 0.36, 0.40) - furrow * vec3(0.03, 0.05, 0.06);
     out.albedo = texel.rgb * texel.rgb * kept;
     out.gloss = mask.r;
     out.open = (1.0 - 0.65 * pore) * (1.0 - 0.25 * furrow) * (1.0 - 0.6 * floor);
