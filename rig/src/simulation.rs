@@ -190,8 +190,8 @@ impl Simulation {
     /// One step towards `controls`.
     pub fn step(&mut self, controls: &Controls) {
         let wanted = controls.clamped();
-        let step_s = STEP_S / self.substeps as f32;
-        for _ in 0..self.substeps {
+        let step_s = self.part_s();
+        for _ in 0..self.substeps * self.model.tissue().parts() {
             // Forces of this moment move the tissue to the end of the step; there the rest meets it.
             let drive = Drive {
                 head: &self.head,
@@ -224,6 +224,11 @@ impl Simulation {
         self.time += STEP_TICKS;
     }
 
+    /// Length of the parts that a step is cut into, s.
+    fn part_s(&self) -> f32 {
+        STEP_S / (self.substeps * self.model.tissue().parts()) as f32
+    }
+
     fn drive(&self) -> Drive<'_> {
         Drive {
             head: &self.head,
@@ -233,7 +238,7 @@ impl Simulation {
             muscle_stiffness: self.muscle_stiffness,
             damping: self.damping,
             volume: self.volume,
-            step_s: STEP_S / self.substeps as f32,
+            step_s: self.part_s(),
         }
     }
 

@@ -61,6 +61,10 @@ pub(crate) trait Tissue: Debug {
     /// One step under `drive`. Between the new velocities and the places that they lead to, `meet` may change the
     /// skin; it is told how long, s, they lead there. Allocates nothing.
     fn step(&mut self, drive: &Drive<'_>, meet: &mut dyn FnMut(&mut Nodes, f32));
+    /// Parts that a step of the simulation has to be cut into for this model, muscles and contact with it.
+    fn parts(&self) -> u32 {
+        1
+    }
     /// The skin's nodes.
     fn skin(&self) -> &Nodes;
     /// The same, for contact and for a rewind.

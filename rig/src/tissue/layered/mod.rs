@@ -16,7 +16,7 @@
 //!   [`LIGHTNESS`]); all stiffnesses are per mass. Where a node's springs are too stiff for the step, it counts as heavier,
 //!   just so much that the step is stable ([`INERTIA`]): that slows only what vibrates faster than some 200 times a
 //!   second, and changes nothing of where things come to rest. No controls can make it fly apart.
-//! - Step: the whole simulation's, cut in parts of [`LONGEST_S`] at most. Semi-implicit Euler, half of the damping before
+//! - Step: a part of the whole simulation's ([`PARTS`]). Semi-implicit Euler, half of the damping before
 //!   the forces and half after. (LEE calls his explicit, but places take the new velocity there too, which is this;
 //!   damping differs.)
 //! - Damping: [`DAMPING`] for all nodes, on the velocity against the skull.
@@ -77,8 +77,8 @@ const LID_LEAST: f32 = 15_000.0;
 const INERTIA: f32 = 0.6;
 /// Nothing in a face is faster, mm/s: lips close with some 300.
 const FASTEST_MM_S: f32 = 2_000.0;
-/// Longest step that it is integrated by, s: 800 a second do, and a little for rounding.
-const LONGEST_S: f32 = 1.0 / 790.0;
+/// Parts that a step of the simulation is cut into: 960 a second.
+const PARTS: u32 = 4;
 /// No node goes farther from where bones carry it, mm: full smiles move the cheek by 15.
 const FARTHEST_MM: f32 = 17.0;
 /// The fascia comes no nearer to the bone than this share of its distance at rest.
@@ -131,8 +131,7 @@ pub(crate) struct Layered {
     gradient: Vec<Vec3A>,
     /// What forces per mass are multiplied by.
     per_mass: f32,
-    /// Parts that a step is cut into; what share of its stiffness a node counts as heavier by, s².
-    parts: u32,
+    /// What share of its stiffness a node counts as heavier by, s².
     heavier: f32,
     springs: Springs,
     prisms: Prisms,
@@ -145,7 +144,6 @@ impl Layered {
         let layers = Layers::new(head, numbering);
         let movable = numbering.movable;
         let scale = head.tissue.stiffness_scale() * LIGHTNESS;
-        let parts = (STEP_S / LONGEST_S).ceil();
         let depth = bone_depth(head, &layers.skin[..movable]);
         let reference = numbering.of(&head.skin.reference);
         let side = numbering.of(&sides(head));
@@ -221,8 +219,7 @@ impl Layered {
             cheeks: cheeks(head, numbering, &depth),
             gradient: vec![Vec3A::ZERO; movable],
             per_mass: scale,
-            parts: parts as u32,
-            heavier: INERTIA * (STEP_S / parts).powi(2),
+            heavier: INERTIA * (STEP_S / PARTS as f32).powi(2),
         }
     }
 
@@ -387,19 +384,17 @@ impl Layered {
 
 impl Tissue for Layered {
     fn step(&mut self, drive: &Drive<'_>, meet: &mut dyn FnMut(&mut Nodes, f32)) {
-        let part = Drive {
-            step_s: drive.step_s / self.parts as f32,
-            ..*drive
-        };
-        for _ in 0..self.parts {
-            self.read(&part);
-            self.resist(part.volume);
-            self.press(&part);
-            self.pull(&part);
-            self.accelerate(part.step_s, DAMPING * part.damping);
-            meet(&mut self.skin, part.step_s);
-            self.drift(part.step_s);
-        }
+        self.read(drive);
+        self.resist(drive.volume);
+        self.press(drive);
+        self.pull(drive);
+        self.accelerate(drive.step_s, DAMPING * drive.damping);
+        meet(&mut self.skin, drive.step_s);
+        self.drift(drive.step_s);
+    }
+
+    fn parts(&self) -> u32 {
+        PARTS
     }
 
     fn skin(&self) -> &Nodes {

@@ -30,7 +30,7 @@ fn prisms_change(muscle: Muscle, changed: impl FnOnce(&mut Layered)) -> f32 {
         muscle_stiffness: 1.0,
         damping: 1.0,
         volume: 1.0,
-        step_s: STEP_S,
+        step_s: STEP_S / PARTS as f32,
     };
     for _ in 0..240 {
         tissue.step(&drive, &mut |_, _| ());
