@@ -1,5 +1,5 @@
 //! Shows the reference head in a window that is resized, shrunk to nothing and restored while it is
-//! drawn, and prints what became of each picture: `cargo run --release -p mouthpiece-render --example window`.
+//! drawn, goes to another tier and loses its device, and prints what became of each picture: `cargo run --release -p mouthpiece-render --example window`.
 
 use std::collections::BTreeMap;
 use std::error::Error;
@@ -17,10 +17,13 @@ use winit::window::{Window, WindowId};
 /// Pictures to draw, and after how many the size changes.
 const PICTURES: u32 = 240;
 const PICTURES_A_SIZE: u32 = 20;
+/// After how many it goes to another tier, and loses its device.
+const TIER_AT: u32 = 60;
+const LOST_AT: u32 = 150;
 const SIZES: [(u32, u32); 5] = [(800, 600), (333, 77), (1, 1), (1280, 720), (400, 711)];
 
 struct App {
-    head: Head,
+    head: Arc<Head>,
     frame: KeyFrame,
     open: Option<(WindowTarget, Arc<Window>)>,
     drawn: u32,
@@ -60,6 +63,12 @@ impl ApplicationHandler for App {
                         target.resize((0, 0));
                     }
                 }
+                if self.drawn == TIER_AT {
+                    target.prepare(&self.head, Tier::Medium);
+                }
+                if self.drawn == LOST_AT {
+                    target.gpu().device().destroy();
+                }
                 window.pre_present_notify();
                 let outcome = match target.draw(&self.frame, &View::default()) {
                     Ok(outcome) => {
@@ -69,8 +78,19 @@ impl ApplicationHandler for App {
                         }
                         format!("{outcome:?}")
                     }
-                    Err(error) => format!("error: {error}"),
+                    Err(error) => {
+                        let size = window.inner_size();
+                        let (window, tier) = (Arc::clone(window), target.tier());
+                        let again =
+                            WindowTarget::new(window, (size.width, size.height), &self.head, tier);
+                        match again {
+                            Ok(again) => *target = again,
+                            Err(error) => eprintln!("{error}"),
+                        }
+                        format!("error: {error}")
+                    }
                 };
+                let outcome = format!("{outcome}, {}", target.tier().name());
                 *self.outcomes.entry(outcome).or_default() += 1;
                 if self.drawn >= PICTURES {
                     events.exit();
@@ -105,7 +125,7 @@ fn open(
 }
 
 fn main() -> Result<(), Box<dyn Error>> {
-    let head = Head::reference()?;
+    let head = Arc::new(Head::reference()?);
     let mut app = App {
         frame: head.rest_frame(),
         head,

@@ -1,6 +1,7 @@
 //! Draws a head: owns its buffers, maps and pipelines, and writes one picture's commands.
 
 use std::sync::Arc;
+use std::time::Instant;
 
 use mouthpiece_rig::{Head, KeyFrame, Material, Skin};
 
@@ -95,8 +96,12 @@ impl Renderer {
             let beside = std::thread::Builder::new()
                 .name("pipelines".into())
                 .spawn_scoped(scope, prepare);
+            let started = Instant::now();
             let skin = SkinGeometry::of(head, detail.smoothness);
+            let meshed = started.elapsed();
             let painted = Maps::paint(head, &detail);
+            let (mesh_ms, maps_ms) = (meshed.as_millis(), (started.elapsed() - meshed).as_millis());
+            tracing::debug!(tier = tier.name(), mesh_ms, maps_ms, "a head is made ready");
             // Where no thread is to be had pipelines are made when they are needed.
             let warm_up = beside.ok().and_then(|thread| thread.join().ok());
             (skin, painted, warm_up)

@@ -188,6 +188,8 @@ impl WindowTarget {
     /// When the frame is of another head, or the device is lost: then make a new `WindowTarget`.
     pub fn draw(&mut self, key_frame: &KeyFrame, view: &View) -> Result<Outcome, WindowError> {
         use wgpu::CurrentSurfaceTexture as Acquired;
+        // A lost device says so only when asked; its surface would have us try again for ever.
+        let _ = self.gpu.device().poll(wgpu::PollType::Poll);
         if self.gpu.is_lost() {
             return Err(RenderError::DeviceLost.into());
         }

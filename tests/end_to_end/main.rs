@@ -4,6 +4,7 @@
 //! |---|---|
 //! | `mouth` | what a viewer sees: lips meet in /p b m/, the mouth opens in open vowels |
 //! | `expression` | faces over speech, scripts of them |
+//! | `backdrop` | what is behind the head, and alpha |
 //! | `export` | videos: in step, the same every time, whole or not there |
 //! | `head` | head files: spoken with, looked at, refused |
 //! | `head_fit` | scans made heads, and what is no scan refused |
@@ -23,6 +24,7 @@
     reason = "a test that cannot go on has failed, and says where"
 )]
 
+mod backdrop;
 mod export;
 mod expression;
 mod graphics;
