@@ -13,7 +13,9 @@ use mouthpiece_render::{Background, Camera, Gpu, Offscreen, SkinModel, Tier, Vie
 use mouthpiece_rig::{Control, Controls, Head, KeyFrame, STEP_TICKS, Simulation, TICK_RATE};
 
 /// Name, where from, and what contracts.
-const POSES: &[(&str, Camera, &[(&str, f32)])] = &[
+type Pose = (&'static str, Camera, &'static [(&'static str, f32)]);
+
+const POSES: &[Pose] = &[
     ("front", Camera::Front, &[]),
     ("34", Camera::ThreeQuarter, &[]),
     ("side", Camera::Side, &[]),

@@ -3,7 +3,7 @@
 //! a photographed face brings its own.
 
 use super::image::Image;
-use super::noise::{hash, unit, value_tiled};
+use super::noise::{Tiled, hash, unit};
 use super::{parallel_rows, ramp};
 
 /// Side of the tile, texels; at the chart's 3.5 texels a mm it repeats after 146 mm, which no face shows.
@@ -30,9 +30,10 @@ impl Complexion {
         let strength = ramp(3.6, 1.6, unevenness);
         let mut taken = vec![[0.0; 3]; SIDE * SIDE];
         if strength > 0.0 {
+            let tint = Tint::new();
             parallel_rows(&mut taken, SIDE, |y, row| {
                 for (x, texel) in row.iter_mut().enumerate() {
-                    *texel = taken_at(x, y);
+                    *texel = tint.at(x, y);
                 }
             });
         }
@@ -55,25 +56,44 @@ impl Complexion {
     }
 }
 
-/// Blood and pigment of a texel as what they take.
-fn taken_at(x: usize, y: usize) -> [f32; 3] {
-    let at = |cells: i32, seed: u32| {
-        let scale = cells as f32 / SIDE as f32;
-        value_tiled(x as f32 * scale, y as f32 * scale, cells, seed) - 0.5
-    };
-    // Cells of 18, 7, 3 and 1.2 mm.
-    let blood = 0.45 * at(8, 1) + 0.65 * at(21, 2) + 0.75 * at(47, 3) + 0.65 * at(120, 4);
-    let pigment = 0.35 * at(11, 5) + 0.45 * at(39, 6) + 0.50 * at(97, 7);
-    let speckle = unit(hash(x as i32 / 2, y as i32 / 2, 8)) - 0.5;
-    // Fine red threads where blood lies near the surface.
-    let thread = (1.0 - 9.0 * (at(33, 9) + 0.35 * at(80, 10)).abs()).max(0.0) * at(9, 11).max(0.0);
-    let blood = blood + 0.9 * thread;
-    let pigment = pigment + 0.22 * speckle;
-    [
-        0.010 * blood + 0.040 * pigment,
-        0.070 * blood + 0.058 * pigment,
-        0.060 * blood + 0.070 * pigment,
-    ]
+/// Blood and pigment over the tile.
+#[derive(Clone, Debug)]
+struct Tint {
+    /// In cells of 18, 7, 3 and 1.2 mm.
+    blood: [Tiled; 4],
+    /// In cells of 13, 4 and 1.5 mm.
+    pigment: [Tiled; 3],
+    /// Fine red threads where blood lies near the surface: their course, and where there are some.
+    threads: [Tiled; 3],
+}
+
+impl Tint {
+    fn new() -> Self {
+        let tiled = |(cells, seed)| Tiled::new(cells, seed);
+        Self {
+            blood: [(8, 1), (21, 2), (47, 3), (120, 4)].map(tiled),
+            pigment: [(11, 5), (39, 6), (97, 7)].map(tiled),
+            threads: [(33, 9), (80, 10), (9, 11)].map(tiled),
+        }
+    }
+
+    /// What a texel's blood and pigment take.
+    fn at(&self, x: usize, y: usize) -> [f32; 3] {
+        let (u, v) = (x as f32 / SIDE as f32, y as f32 / SIDE as f32);
+        let sum = |tiles: &[Tiled], shares: &[f32]| -> f32 {
+            tiles.iter().zip(shares).map(|(t, s)| t.at(u, v) * s).sum()
+        };
+        let [course, waver, some] = self.threads.each_ref().map(|tile| tile.at(u, v));
+        let thread = (1.0 - 9.0 * (course + 0.35 * waver).abs()).max(0.0) * some.max(0.0);
+        let speckle = unit(hash(x as i32 / 2, y as i32 / 2, 8)) - 0.5;
+        let blood = sum(&self.blood, &[0.45, 0.65, 0.75, 0.65]) + 0.9 * thread;
+        let pigment = sum(&self.pigment, &[0.35, 0.45, 0.50]) + 0.22 * speckle;
+        [
+            0.010 * blood + 0.040 * pigment,
+            0.070 * blood + 0.058 * pigment,
+            0.060 * blood + 0.070 * pigment,
+        ]
+    }
 }
 
 /// How much a colour map varies within a few texels, in bytes (the mean of what its green differs from the mean

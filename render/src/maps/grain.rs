@@ -10,7 +10,7 @@ use glam::{Vec2, vec2};
 
 use super::image::Image;
 use super::landmarks::Landmarks;
-use super::noise::{cells, value, value_tiled};
+use super::noise::{Tiled, TiledCells, value};
 use super::{CHART_HEIGHT, CHART_MM, parallel_rows, ramp};
 
 /// Side of the tile on the skin, mm.
@@ -35,11 +35,12 @@ struct Place {
 
 /// Slopes across and up (128 is flat, 255 is 45 degrees), how deep in a furrow, how deep in a pore.
 pub(crate) fn paint(side: usize) -> Image {
+    let skin = Skin::new();
     let mut places = vec![Place::default(); side * side];
     let mm = TILE_MM / side as f32;
     parallel_rows(&mut places, side, |y, row| {
         for (x, place) in row.iter_mut().enumerate() {
-            *place = at(vec2(x as f32, y as f32) / side as f32);
+            *place = skin.at(vec2(x as f32, y as f32) / side as f32);
         }
     });
     let mut image = Image::new(side, side);
@@ -62,34 +63,52 @@ pub(super) fn slope(slope: f32) -> u8 {
     (slope.clamp(-1.0, 1.0) * 127.0 + 128.0) as u8
 }
 
-/// The synthetic skin at a place of the tile, 0..1 both ways.
-fn at(t: Vec2) -> Place {
-    // Furrows are not straight.
-    let bend = |seed| value_tiled(t.x * 60.0, t.y * 60.0, 60, seed) - 0.5;
-    let p = t * CELLS as f32 + vec2(bend(3), bend(4)) * 0.45;
-    let near = cells(p.x, p.y, CELLS, 0.42, 11);
-    let [d1, d2, d3] = near.distance;
-    let furrow = 1.0 - ramp(0.02, 0.27, d2 - d1);
-    let q = t * FINE_CELLS as f32 + vec2(bend(5), bend(6)) * 0.6;
-    let fine = cells(q.x, q.y, FINE_CELLS, 0.45, 12).distance;
-    let fine_furrow = 1.0 - ramp(0.02, 0.30, fine[1] - fine[0]);
-    // A pore where three cells meet, at every other such place.
-    let meet = 1.0 - ramp(0.04, 0.28, d3 - d1);
-    let chosen = ramp(0.40, 0.75, value_tiled(t.x * 46.0, t.y * 46.0, 46, 17));
-    let pore = meet * chosen;
-    let slow = |cells: i32, seed| {
-        let at = t * cells as f32;
-        value_tiled(at.x, at.y, cells, seed) - 0.5
-    };
-    let uneven = slow(7, 21) * 0.9 + slow(15, 22) * 0.55 + slow(31, 23) * 0.22;
-    let dome = 0.012 * (1.0 - (d1 * 1.6).min(1.0));
-    Place {
-        height_mm: UNEVEN_MM * uneven + dome
-            - FURROW_MM * furrow
-            - FINE_FURROW_MM * fine_furrow
-            - PORE_MM * pore,
-        furrow: 0.75 * furrow + 0.25 * fine_furrow,
-        pore,
+/// The synthetic skin: its patterns over the tile.
+#[derive(Clone, Debug)]
+struct Skin {
+    cells: TiledCells,
+    fine: TiledCells,
+    /// Furrows are not straight.
+    bends: [Tiled; 4],
+    /// Where cells meet there is a pore or there is none.
+    chosen: Tiled,
+    uneven: [Tiled; 3],
+}
+
+impl Skin {
+    fn new() -> Self {
+        Self {
+            cells: TiledCells::new(CELLS, 0.42, 11),
+            fine: TiledCells::new(FINE_CELLS, 0.45, 12),
+            bends: [3, 4, 5, 6].map(|seed| Tiled::new(60, seed)),
+            chosen: Tiled::new(46, 17),
+            uneven: [(7, 21), (15, 22), (31, 23)].map(|(cells, seed)| Tiled::new(cells, seed)),
+        }
+    }
+
+    /// At a place of the tile, 0..1 both ways.
+    fn at(&self, t: Vec2) -> Place {
+        let [a, b, c, d] = self.bends.each_ref().map(|bend| bend.at(t.x, t.y));
+        let p = t * CELLS as f32 + vec2(a, b) * 0.45;
+        let near = self.cells.at(p.x, p.y);
+        let [d1, d2, d3] = near.distance;
+        let furrow = 1.0 - ramp(0.02, 0.27, d2 - d1);
+        let q = t * FINE_CELLS as f32 + vec2(c, d) * 0.6;
+        let fine = self.fine.at(q.x, q.y).distance;
+        let fine_furrow = 1.0 - ramp(0.02, 0.30, fine[1] - fine[0]);
+        let meet = 1.0 - ramp(0.04, 0.28, d3 - d1);
+        let pore = meet * ramp(-0.10, 0.25, self.chosen.at(t.x, t.y));
+        let [broad, middle, small] = self.uneven.each_ref().map(|slow| slow.at(t.x, t.y));
+        let uneven = broad * 0.9 + middle * 0.55 + small * 0.22;
+        let dome = 0.012 * (1.0 - (d1 * 1.6).min(1.0));
+        Place {
+            height_mm: UNEVEN_MM * uneven + dome
+                - FURROW_MM * furrow
+                - FINE_FURROW_MM * fine_furrow
+                - PORE_MM * pore,
+            furrow: 0.75 * furrow + 0.25 * fine_furrow,
+            pore,
+        }
     }
 }
 

@@ -41,35 +41,40 @@ pub(crate) fn fractal(x: f32, y: f32, seed: u32) -> f32 {
         / 7.0
 }
 
-/// A cell number that runs out of 0..period by less than a period, brought back.
-fn wrapped(i: i32, period: i32) -> i32 {
-    if i < 0 {
-        i + period
-    } else if i >= period {
-        i - period
-    } else {
-        i
+/// Smooth noise that repeats: over a tile whose side is 1.
+#[derive(Clone, Debug)]
+pub(crate) struct Tiled {
+    /// Lattice cells along the tile's side.
+    cells: usize,
+    values: Vec<f32>,
+}
+
+impl Tiled {
+    pub(crate) fn new(cells: usize, seed: u32) -> Self {
+        let values = (0..cells * cells)
+            .map(|i| unit(hash((i % cells) as i32, (i / cells) as i32, seed)) - 0.5)
+            .collect();
+        Self { cells, values }
+    }
+
+    /// -0.5..0.5 at a place of the tile, 0..1 both ways.
+    pub(crate) fn at(&self, x: f32, y: f32) -> f32 {
+        let scale = self.cells as f32;
+        let last = self.cells - 1;
+        let (x, y) = ((x * scale).max(0.0), (y * scale).max(0.0));
+        let (xi, yi) = ((x as usize).min(last), (y as usize).min(last));
+        let smooth = |t: f32| t * t * (3.0 - 2.0 * t);
+        let (u, v) = (smooth(x - xi as f32), smooth(y - yi as f32));
+        let next = |i: usize| if i == last { 0 } else { i + 1 };
+        let (above, below) = (yi * self.cells, next(yi) * self.cells);
+        let (right, values) = (next(xi), &self.values);
+        let low = values[above + xi] + (values[above + right] - values[above + xi]) * u;
+        let high = values[below + xi] + (values[below + right] - values[below + xi]) * u;
+        low + (high - low) * v
     }
 }
 
-/// [`value`] that repeats after `period` cells both ways. Places lie in the first period or just outside it.
-pub(crate) fn value_tiled(x: f32, y: f32, period: i32, seed: u32) -> f32 {
-    let (xi, yi) = (below(x), below(y));
-    let smooth = |t: f32| t * t * (3.0 - 2.0 * t);
-    let (u, v) = (smooth(x - xi as f32), smooth(y - yi as f32));
-    let at = |dx: i32, dy: i32| {
-        unit(hash(
-            wrapped(xi + dx, period),
-            wrapped(yi + dy, period),
-            seed,
-        ))
-    };
-    let low = at(0, 0) + (at(1, 0) - at(0, 0)) * u;
-    let high = at(0, 1) + (at(1, 1) - at(0, 1)) * u;
-    low + (high - low) * v
-}
-
-/// The three nearest of points scattered one a cell of side 1, repeating after `period` cells both ways.
+/// The three nearest of points scattered one a cell of side 1.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Near {
     /// Distances, nearest first.
@@ -78,8 +83,19 @@ pub(crate) struct Near {
     pub(crate) hash: u32,
 }
 
-/// See [`Near`]. Places lie in the first period or just outside it. Points stay within `spread` of their cells' middles: the less, the more even the pattern.
-pub(crate) fn cells(x: f32, y: f32, period: i32, spread: f32, seed: u32) -> Near {
+/// See [`Near`]. Points stay within `spread` of their cells' middles: the less, the more even the pattern.
+pub(crate) fn cells(x: f32, y: f32, spread: f32, seed: u32) -> Near {
+    nearest(x, y, |xi, yi| scattered(xi, yi, spread, seed))
+}
+
+/// The point of a cell off the cell's middle, and what it is known by.
+fn scattered(x: i32, y: i32, spread: f32, seed: u32) -> ([f32; 2], u32) {
+    let h = hash(x, y, seed);
+    let off = |bits: u32| ((bits & 0xFFFF) as f32 / 65536.0 - 0.5) * 2.0 * spread;
+    ([off(h), off(h >> 16)], h)
+}
+
+fn nearest(x: f32, y: f32, point: impl Fn(i32, i32) -> ([f32; 2], u32)) -> Near {
     let (xi, yi) = (below(x), below(y));
     let (fx, fy) = (x - xi as f32 - 0.5, y - yi as f32 - 0.5);
     let mut near = Near {
@@ -88,10 +104,9 @@ pub(crate) fn cells(x: f32, y: f32, period: i32, spread: f32, seed: u32) -> Near
     };
     for dy in -1..=1 {
         for dx in -1..=1 {
-            let h = hash(wrapped(xi + dx, period), wrapped(yi + dy, period), seed);
-            let off = |bits: u32| ((bits & 0xFFFF) as f32 / 65536.0 - 0.5) * 2.0 * spread;
-            let px = dx as f32 + off(h) - fx;
-            let py = dy as f32 + off(h >> 16) - fy;
+            let (off, h) = point(xi + dx, yi + dy);
+            let px = dx as f32 + off[0] - fx;
+            let py = dy as f32 + off[1] - fy;
             let d = px * px + py * py;
             let [first, second, third] = near.distance;
             if d < first {
@@ -106,6 +121,34 @@ pub(crate) fn cells(x: f32, y: f32, period: i32, spread: f32, seed: u32) -> Near
     }
     near.distance = near.distance.map(f32::sqrt);
     near
+}
+
+/// [`cells`] that repeat: over a tile whose side is 1.
+#[derive(Clone, Debug)]
+pub(crate) struct TiledCells {
+    cells: i32,
+    points: Vec<([f32; 2], u32)>,
+}
+
+impl TiledCells {
+    pub(crate) fn new(cells: i32, spread: f32, seed: u32) -> Self {
+        let points = (0..cells * cells)
+            .map(|i| scattered(i % cells, i / cells, spread, seed))
+            .collect();
+        Self { cells, points }
+    }
+
+    /// At a place in cells, which may lie outside the tile by less than the tile's side.
+    pub(crate) fn at(&self, x: f32, y: f32) -> Near {
+        let wrapped = |i: i32| {
+            let i = if i < 0 { i + self.cells } else { i };
+            let i = if i >= self.cells { i - self.cells } else { i };
+            i.clamp(0, self.cells - 1) as usize
+        };
+        nearest(x, y, |xi, yi| {
+            self.points[wrapped(yi) * self.cells as usize + wrapped(xi)]
+        })
+    }
 }
 
 /// A small generator for scattering: SplitMix's step, cut to 32 bits.

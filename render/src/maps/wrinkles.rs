@@ -250,7 +250,7 @@ impl Face<'_> {
                 let off = (place - pg) / radius;
                 let share = ramp(1.0, 0.25, off.length());
                 if share > 0.0 {
-                    let near = cells(place.x * 0.24, place.y * 0.27, 1 << 12, 0.42, 77);
+                    let near = cells(place.x * 0.24, place.y * 0.27, 0.42, 77);
                     let pit = ramp(0.62, 0.0, near.distance[0]);
                     let some = 0.35 + 0.65 * unit(near.hash);
                     relief.heights[y * relief.width + x] -= 0.50 * share * pit * some;

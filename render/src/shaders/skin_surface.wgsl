@@ -64,7 +64,7 @@ struct SkinFragment {
 // broad, in part, red most, because it has been under the skin (a broad lamp's angle and d'Eon's profile of skin over
 // the radius of the surface, as one width). `convex` is one over that radius.
 fn creep(convex: f32) -> vec3<f32> {
-    return vec3(0.30, 0.24, 0.22) + vec3(0.40, 0.14, 0.08) * convex;
+    return vec3(0.30, 0.24, 0.22) + vec3(0.30, 0.12, 0.08) * convex;
 }
 
 // Matte light whose terminator is that wide: straight where lit, a parabola across the terminator.
