@@ -452,3 +452,26 @@ impl Face<'_> {
         creases
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_head_without_landmarks_has_no_wrinkles_and_does_no_harm() {
+        let mut head = Head::reference().unwrap();
+        let folded = |head: &Head| {
+            let wrinkles = Wrinkles::of(head, 256, &|_| 0.0);
+            let deep = |relief: &Relief| relief.heights.iter().filter(|h| **h < -0.2).count();
+            [deep(&wrinkles.raised), deep(&wrinkles.drawn)]
+        };
+        assert!(
+            folded(&head).iter().all(|texels| *texels > 150),
+            "{:?}",
+            folded(&head)
+        );
+        head.landmarks.clear();
+        head.features.clear();
+        assert_eq!(folded(&head), [0, 0]);
+    }
+}

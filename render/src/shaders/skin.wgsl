@@ -13,7 +13,7 @@ fn all_but_key(in: SkinFragment, n: vec3<f32>, edge: f32, roughness: f32) -> vec
     let width = creep(in.shares.w);
     let fill_cos = seen_by(dot(n, frame.fill_dir.xyz), dot(in.normal.xyz, frame.fill_dir.xyz));
     let rim_cos = seen_by(dot(n, frame.rim_dir.xyz), dot(in.normal.xyz, frame.rim_dir.xyz));
-    let soft = frame.fill_colour.rgb * scattered(fill_cos, width) * mix(occlusion, 1.0, 0.2)
+    let soft = frame.fill_colour.rgb * scattered(fill_cos, width) * lamp_reaching(occlusion)
         + frame.rim_colour.rgb * scattered(rim_cos, width) * occlusion
         + ambient_from(n) * (bounced(occlusion, SKIN) + 0.35 * edge * occlusion);
     let fill = gloss(n, v, frame.fill_dir.xyz, roughness) * occlusion;

@@ -73,6 +73,11 @@ fn scattered(cosine: vec3<f32>, width: vec3<f32>) -> vec3<f32> {
     return t * t / (4.0 * width) + max(cosine - width, vec3(0.0));
 }
 
+// What occlusion leaves of a lamp: more than of the room's light where it is slight, nothing in a hole.
+fn lamp_reaching(occlusion: f32) -> f32 {
+    return occlusion * (1.35 - 0.35 * occlusion);
+}
+
 // A smooth step over 0..1 of a value already scaled.
 fn eased(value: f32) -> f32 {
     let t = clamp(value, 0.0, 1.0);
@@ -102,7 +107,7 @@ fn skin_vertex(in: SkinVertex) -> SkinFragment {
     let mirrored = (frame.fill_colour.rgb * fill + frame.rim_colour.rgb * rim) * 0.8 * MIRROR
         + ambient_from(reflect(-v, n)) * ((0.020 + 0.10 * edge) * occlusion * occlusion);
     let shadow = shadow_place(world, n);
-    let soft = frame.fill_colour.rgb * scattered(vec3(f), width) * mix(occlusion, 1.0, 0.2)
+    let soft = frame.fill_colour.rgb * scattered(vec3(f), width) * lamp_reaching(occlusion)
         + frame.rim_colour.rgb * scattered(vec3(b), width) * occlusion
         + around * (bounced(occlusion, SKIN) + 0.35 * edge * occlusion);
 
