@@ -42,6 +42,13 @@ impl Renderer {
         view: &View,
         mouth_open: bool,
     ) {
+        // One colour needs no drawing, where the target takes it as it is.
+        let plain = match view.background {
+            Background::Plain(colour) if !self.format.is_srgb() => Some(colour),
+            _ => None,
+        };
+        let [r, g, b] = plain.unwrap_or_default().map(|c| f64::from(c) / 255.0);
+        let clear = wgpu::Color { r, g, b, a: 1.0 };
         let mut pass = encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
             label: Some("picture"),
             color_attachments: &[Some(wgpu::RenderPassColorAttachment {
@@ -49,7 +56,7 @@ impl Renderer {
                 depth_slice: None,
                 resolve_target: targets.colour.as_ref().map(|_| target),
                 ops: wgpu::Operations {
-                    load: wgpu::LoadOp::Clear(wgpu::Color::BLACK),
+                    load: wgpu::LoadOp::Clear(clear),
                     store: if targets.colour.is_some() {
                         wgpu::StoreOp::Discard
                     } else {
@@ -80,6 +87,7 @@ impl Renderer {
                 pass.set_bind_group(1, &hung.group, &[]);
                 pass.draw(0..3, 0..1);
             }
+            _ if plain.is_some() => {}
             _ => {
                 pass.set_pipeline(self.pipelines.get(Draw::Backdrop));
                 pass.draw(0..BACKDROP_VERTICES, 0..1);

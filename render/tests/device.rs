@@ -1,6 +1,11 @@
 //! What the renderer asks of a device: no more than WebGPU's downlevel limits, nothing that its validation has to
 //! complain of, and a way round what is not offered. Needs a graphics adapter and says so where there is none.
 
+#![allow(
+    clippy::unwrap_used,
+    reason = "a test that cannot go on has failed, and says where"
+)]
+
 use std::sync::{Arc, Mutex};
 
 use log::{Level, LevelFilter, Metadata, Record};

@@ -1,6 +1,11 @@
 //! What is round the head, as a user would notice it: backdrops of every kind, straight alpha, the room's light, and
 //! a device that goes away in the middle of the work. Needs a graphics adapter and says so where there is none.
 
+#![allow(
+    clippy::unwrap_used,
+    reason = "a test that cannot go on has failed, and says where"
+)]
+
 use std::sync::Arc;
 
 use glam::Vec3;

@@ -31,8 +31,8 @@ fn backdrop_vertex(@builtin(vertex_index) index: u32) -> WallFragment {
 @fragment
 fn backdrop(in: WallFragment) -> @location(0) vec4<f32> {
     // Fixed grain of a step, so that the slow gradient does not band once it has 8 bits.
-    let q = vec2<u32>(in.clip.xy);
-    let grain = f32(((q.x * 1597u) ^ (q.y * 5167u)) * 2654435761u >> 24u) / 255.0 - 0.5;
+    // (Interleaved gradient noise, Jimenez 2014: a few multiplications, which software rendering likes.)
+    let grain = fract(52.9829189 * fract(dot(in.clip.xy, vec2(0.06711056, 0.00583715)))) - 0.5;
     let varies = any(frame.backdrop[0].rgb != frame.backdrop[1].rgb);
     return shown(in.colour + select(0.0, grain / 255.0, varies)) * frame.picture.w;
 }
