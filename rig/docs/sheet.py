@@ -3,6 +3,7 @@
 
     sheet.py [reference]     reference.png: the reference head, six faces from three sides
     sheet.py expressions     expressions.png: every expression of the library, from the front
+    sheet.py phones          phones.png: every phone of TIMIT held, the mouth from the front and from the side
 
 Options behind that are handed to `mouthpiece still`, as `--head OTHER.glb`.
 """
@@ -27,6 +28,12 @@ BYTES_MAX = 280_000
 # Of the sheet of expressions: faces a row, and what of the picture is shown, since hair and shirt say nothing.
 COLUMNS = 7
 FACE = (45, 75, 195, 255)
+# The same of the sheet of phones: the mouth from the front and from the side.
+PHONES_A_ROW = 6
+MOUTHS = {"front": (72, 160, 168, 240), "side": (22, 160, 102, 240)}
+# TIMIT's phones by class, as its documentation has them; what is silent has one face.
+PHONES = """iy ih eh ey ae aa aw ay ah ao oy ow uh uw ux er ax ix axr ax-h l r w y hh hv el
+m em n en eng ng nx b d g p t k dx q bcl dcl gcl pcl tcl kcl jh ch s sh z zh f v th dh h#""".split()
 
 
 def still(args, options):
@@ -60,6 +67,22 @@ def expressions(options):
     return sheet
 
 
+def phones(options):
+    boxes = MOUTHS.values()
+    width = sum(right - left for left, _, right, _ in boxes)
+    height = max(bottom - top for _, top, _, bottom in boxes)
+    sheet = Image.new("RGB", (width * PHONES_A_ROW, height * -(-len(PHONES) // PHONES_A_ROW)))
+    draw = ImageDraw.Draw(sheet)
+    for i, phone in enumerate(PHONES):
+        x, y = i % PHONES_A_ROW * width, i // PHONES_A_ROW * height
+        left = x
+        for view, box in MOUTHS.items():
+            sheet.paste(still(["--view", view, "--phone", phone], options).crop(box), (left, y))
+            left += box[2] - box[0]
+        draw.text((x + 5, y + 3), phone, fill="white", font=ImageFont.load_default(13))
+    return sheet
+
+
 def save(sheet, path):
     # As many colours as the size allows.
     for colours in (256, 192, 128, 96, 64):
@@ -72,7 +95,7 @@ def save(sheet, path):
 
 
 def main():
-    sheets = {"reference": reference, "expressions": expressions}
+    sheets = {"reference": reference, "expressions": expressions, "phones": phones}
     words = sys.argv[1:]
     name = words.pop(0) if words and words[0] in sheets else "reference"
     save(sheets[name](words), HERE / f"{name}.png")
