@@ -9,6 +9,7 @@
 
 mod complexion;
 mod creases;
+mod expression_lines;
 pub(crate) mod eye;
 pub(crate) mod grain;
 pub(crate) mod hair;
