@@ -65,20 +65,75 @@ fn judge(name: &str, args: &[&str]) {
     );
 }
 
-/// Guards the face at rest.
-#[test]
-fn the_face_at_rest() {
-    judge("rest", &[]);
+/// A room lit from the left by a low warm sun and from above by a blue sky, as a panorama in Radiance's format.
+fn dusk() -> tempfile::TempPath {
+    let (wide, high) = (32_usize, 16_usize);
+    let mut file = format!("#?RADIANCE\nFORMAT=32-bit_rle_rgbe\n\n-Y {high} +X {wide}\n").into_bytes();
+    for y in 0..high {
+        for x in 0..wide {
+            let sun = (5..11).contains(&x) && (5..9).contains(&y);
+            let rgb = match (sun, y < high / 2) {
+                (true, _) => [255, 150, 60],
+                (false, true) => [24, 34, 60],
+                (false, false) => [20, 16, 12],
+            };
+            file.extend(rgb);
+            // The exponent that all three share: the sun is eight times as bright.
+            file.push(if sun { 131 } else { 128 });
+        }
+    }
+    let path = tempfile::Builder::new()
+        .suffix(".hdr")
+        .tempfile()
+        .unwrap()
+        .into_temp_path();
+    fs::write(&path, file).unwrap();
+    path
 }
 
-/// Guards the open mouth: lips, teeth, tongue and the dark behind.
-#[test]
-fn the_face_in_an_open_vowel() {
-    judge("open", &["--phone", "aa"]);
+/// A test for each: what it guards, its name, and what is drawn.
+macro_rules! guarded {
+    ($($(#[doc = $guards:literal])+ $test:ident: $name:literal, $args:expr;)+) => {
+        $($(#[doc = $guards])+ #[test] fn $test() { judge($name, &$args); })+
+    };
 }
 
-/// Guards the shape from an angle: profile of nose and lips, ears, hair.
+guarded! {
+    /// Guards the face at rest.
+    the_face_at_rest: "rest", [];
+    /// Guards the open mouth: lips, teeth, tongue and the dark behind.
+    the_face_in_an_open_vowel: "open", ["--phone", "aa"];
+    /// Guards the shape from an angle: profile of nose and lips, ears, hair.
+    the_face_half_from_the_side: "half", ["--view", "34"];
+    /// Guards the profile.
+    the_face_from_the_side: "side", ["--view", "side"];
+    /// Guards the low tier.
+    the_face_in_the_low_tier: "low", ["--tier", "low"];
+    /// Guards the high tier.
+    the_face_in_the_high_tier: "high", ["--tier", "high"];
+    /// Guards the forehead's wrinkles and wide eyes.
+    a_surprised_face: "surprise", ["--tier", "high", "--expression", "surprise"];
+    /// Guards cheeks and crow's feet from an angle.
+    a_happy_face_half_from_the_side: "happy", ["--view", "34", "--tier", "high", "--expression", "happiness"];
+    /// Guards rounded lips in profile, in the low tier.
+    a_rounded_mouth_from_the_side: "rounded", ["--view", "side", "--tier", "low", "--phone", "uw"];
+    /// Guards the other model of the skin.
+    the_face_after_blinn_and_phong: "blinn-phong", ["--skin", "blinn-phong"];
+    /// Guards the brow's furrows before a gradient.
+    an_angry_face_before_a_gradient: "angry", ["--expression", "anger", "--background", "gradient:#806040,#101418"];
+    /// Guards light from a panorama.
+    the_face_at_dusk: "dusk", ["--environment", &dusk().to_string_lossy()];
+}
+
+/// Guards the guard: another shader on the same skin is another picture.
 #[test]
-fn the_face_half_from_the_side() {
-    judge("half", &["--view", "34"]);
+fn another_shader_would_be_seen() {
+    let skin = |name: &str| Picture::read(&golden(name));
+    let found = skin("rest").difference(&skin("blinn-phong"));
+    assert!(
+        found.mean > MEAN_MAX || found.worst_tile > TILE_MAX,
+        "mean {}, worst {}",
+        found.mean,
+        found.worst_tile
+    );
 }
