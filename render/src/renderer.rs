@@ -56,7 +56,9 @@ pub struct Renderer {
     pub(crate) maps: MapGroups,
     pub(crate) layouts: Layouts,
     pub(crate) hung: Option<Hung>,
-    /// Until the first picture is on its way.
+    /// Pictures sent on their way.
+    drawn: u32,
+    /// Until the second.
     pub(crate) warm_up: Option<WarmUp>,
     pub(crate) targets: Option<Targets>,
 }
@@ -173,6 +175,7 @@ impl Renderer {
             maps,
             layouts,
             hung: None,
+            drawn: 0,
             warm_up,
             targets: None,
         })
@@ -207,9 +210,13 @@ impl Renderer {
         Ok(submission)
     }
 
-    /// After each submission: behind the first picture, the mouth is made ready before it opens.
+    /// After each submission: behind the second picture the mouth is made ready before it opens. Who wants one
+    /// picture only does not wait for that.
     pub(crate) fn submitted(&mut self, gpu: &Gpu) {
-        if let Some(warm_up) = self.warm_up.take() {
+        self.drawn = self.drawn.saturating_add(1);
+        if self.drawn >= 2
+            && let Some(warm_up) = self.warm_up.take()
+        {
             warm_up.run(gpu, &self.pipelines, &Draw::MOUTH);
         }
     }
