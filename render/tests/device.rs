@@ -9,7 +9,9 @@
 use std::sync::{Arc, Mutex};
 
 use log::{Level, LevelFilter, Metadata, Record};
-use mouthpiece_render::{Background, Gpu, Offscreen, Picture, Shown, SkinModel, Tier, View};
+use mouthpiece_render::{
+    Background, Gpu, Offscreen, Picture, Renderer, Shown, SkinModel, Tier, View,
+};
 use mouthpiece_rig::{Anatomy, Control, Head, undressed};
 
 /// What wgpu, naga and the drivers behind them complain of.
@@ -107,4 +109,72 @@ fn samples_that_are_not_offered_become_one() {
     assert_eq!(gpu.samples(format, 4), 4, "WebGPU promises four");
     assert_eq!(gpu.samples(format, 64), 1);
     assert_eq!(gpu.samples(format, 0), 1);
+}
+
+/// Whether the card encodes sRGB or the shader does: the same picture. One sample a pixel, since a card that encodes also
+/// averages in linear light.
+#[test]
+fn a_target_that_encodes_srgb_shows_the_same_picture() {
+    let Ok(gpu) = Gpu::headless() else { return };
+    let head = Head::reference().unwrap();
+    let size = (64, 64);
+    let frame = head.rest_frame();
+    let mut plain = Offscreen::new(&gpu, &head, size, Tier::Low).unwrap();
+    let plain = plain.render(&frame, &View::default()).unwrap();
+
+    let format = wgpu::TextureFormat::Rgba8UnormSrgb;
+    let mut renderer = Renderer::new(&gpu, &head, format, Tier::Low).unwrap();
+    let texture = gpu.device().create_texture(&wgpu::TextureDescriptor {
+        label: None,
+        size: wgpu::Extent3d {
+            width: size.0,
+            height: size.1,
+            depth_or_array_layers: 1,
+        },
+        mip_level_count: 1,
+        sample_count: 1,
+        dimension: wgpu::TextureDimension::D2,
+        format,
+        usage: wgpu::TextureUsages::RENDER_ATTACHMENT | wgpu::TextureUsages::COPY_SRC,
+        view_formats: &[],
+    });
+    let target = texture.create_view(&wgpu::TextureViewDescriptor::default());
+    renderer
+        .draw(&gpu, &frame, &View::default(), &target, size)
+        .unwrap();
+    let rows = gpu.device().create_buffer(&wgpu::BufferDescriptor {
+        label: None,
+        size: u64::from(size.0 * size.1 * 4),
+        usage: wgpu::BufferUsages::COPY_DST | wgpu::BufferUsages::MAP_READ,
+        mapped_at_creation: false,
+    });
+    let mut encoder = gpu
+        .device()
+        .create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
+    encoder.copy_texture_to_buffer(
+        texture.as_image_copy(),
+        wgpu::TexelCopyBufferInfo {
+            buffer: &rows,
+            layout: wgpu::TexelCopyBufferLayout {
+                offset: 0,
+                bytes_per_row: Some(size.0 * 4),
+                rows_per_image: None,
+            },
+        },
+        texture.size(),
+    );
+    encoder.map_buffer_on_submit(&rows, wgpu::MapMode::Read, .., |mapped| mapped.unwrap());
+    gpu.queue().submit([encoder.finish()]);
+    gpu.device()
+        .poll(wgpu::PollType::wait_indefinitely())
+        .unwrap();
+    let encoded = rows.get_mapped_range(..).unwrap();
+    let apart = plain
+        .iter()
+        .zip(encoded.iter())
+        .map(|(a, b)| a.abs_diff(*b));
+    assert!(
+        apart.max().unwrap() <= 1,
+        "they differ by more than rounding"
+    );
 }

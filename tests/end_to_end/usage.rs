@@ -103,7 +103,11 @@ fn bench_json_has_every_figure() {
         "/spring_pass/portable/ns_per_edge",
         "/speech/realtime_factor",
         "/render/medium/640x480/ms",
+        "/render_over_blinn_phong/medium/ratio",
+        "/render_over_blinn_phong/high/ratio",
+        "/live_low/pictures_per_second",
         "/export/realtime_factor",
+        "/export/low/realtime_factor",
         "/first_picture_ms",
     ] {
         let value = report.pointer(pointer).and_then(serde_json::Value::as_f64);
