@@ -22,31 +22,35 @@ const SETTLE_TICKS: i64 = TICK_RATE;
 /// Runs the command.
 pub fn run(args: &StillArgs) -> anyhow::Result<()> {
     let cast = Cast::load(&args.cast)?;
-    let frame = match (&args.phone, &args.controls) {
-        (Some(code), _) => phone(&cast, code)?,
-        (None, Some(text)) => settled(&cast, &controls(text)?),
-        (None, None) => settled(
-            &cast,
-            &match &args.expression {
-                Some(name) => expression(name)?,
-                None => Controls::default(),
-            },
-        ),
-    };
-    let gpu = Gpu::headless()?;
     let size = (args.size.width, args.size.height);
     let mut view = args.look.view()?;
-    let head = match args.show.anatomy() {
-        None => Arc::clone(&cast.head),
-        Some(what) => {
+    let canvas = |head: &Head| -> anyhow::Result<Offscreen> {
+        let gpu = Gpu::headless()?;
+        Ok(Offscreen::new(&gpu, head, size, args.look.tier.into())?)
+    };
+    let (frame, ready) = std::thread::scope(|scope| {
+        // Graphics take as long to start as the head takes to settle; what lies under the skin is known only then.
+        let beside = args.show.anatomy().is_none().then(|| {
+            std::thread::Builder::new()
+                .name("graphics".into())
+                .spawn_scoped(scope, || canvas(&cast.head))
+        });
+        let frame = posed(args, &cast);
+        let ready = beside.and_then(Result::ok);
+        (frame, ready.and_then(|thread| thread.join().ok()))
+    });
+    let frame = frame?;
+    let mut offscreen = match (args.show.anatomy(), ready) {
+        (Some(what), _) => {
             view.shown = Shown::Anatomy;
-            Arc::new(Head {
+            canvas(&Head {
                 parts: undressed(&cast.head, &frame, what),
                 ..Head::clone(&cast.head)
-            })
+            })?
         }
+        (None, Some(ready)) => ready?,
+        (None, None) => canvas(&cast.head)?,
     };
-    let mut offscreen = Offscreen::new(&gpu, &head, size, args.look.tier.into())?;
     let rgba = offscreen.render(&frame, &view)?;
     output::write(&args.output, &frames::png(rgba, size.0, size.1)?)?;
     if let Some(path) = &args.outline {
@@ -54,6 +58,21 @@ pub fn run(args: &StillArgs) -> anyhow::Result<()> {
         output::write(path, &serde_json::to_vec_pretty(&outline)?)?;
     }
     Ok(())
+}
+
+/// The head as it was asked for.
+fn posed(args: &StillArgs, cast: &Cast) -> anyhow::Result<KeyFrame> {
+    Ok(match (&args.phone, &args.controls) {
+        (Some(code), _) => phone(cast, code)?,
+        (None, Some(text)) => settled(cast, &controls(text)?),
+        (None, None) => settled(
+            cast,
+            &match &args.expression {
+                Some(name) => expression(name)?,
+                None => Controls::default(),
+            },
+        ),
+    })
 }
 
 /// The head at rest under `controls`.
