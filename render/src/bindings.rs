@@ -3,6 +3,7 @@
 use crate::gpu::Gpu;
 use crate::layouts::Layouts;
 use crate::maps::Maps;
+use crate::maps::hair;
 use crate::maps::image::Image;
 use crate::picture::Picture;
 use crate::targets::{DEPTH, texture};
@@ -20,7 +21,8 @@ pub(crate) struct MapGroups {
 /// Puts painted maps on the card.
 pub(crate) fn maps(gpu: &Gpu, layouts: &Layouts, painted: Maps, detail: &Detail) -> MapGroups {
     let eye = upload::image(gpu, "eye", painted.eye);
-    let hair = upload::image(gpu, "hair", painted.hair);
+    let strands = hair::mips(painted.hair, detail.samples);
+    let hair = upload::levels(gpu, "hair", strands);
     let colour = upload::image(gpu, "skin colour", painted.skin.colour);
     let mask = upload::image(gpu, "skin mask", painted.skin.mask);
     let wrinkles = upload::image(gpu, "skin wrinkles", painted.skin.wrinkles);

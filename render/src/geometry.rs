@@ -4,6 +4,7 @@ use glam::Vec3;
 use mouthpiece_rig::{Head, Material, Mesh, Part};
 
 use crate::gpu_data::{PartVertex, octahedral, unorm};
+use crate::hairs;
 
 /// All parts of one material in one pair of buffers.
 #[derive(Debug, Default)]
@@ -16,23 +17,35 @@ impl PartGeometry {
     pub(crate) fn of(head: &Head, material: Material) -> Self {
         let mut geometry = Self::default();
         for part in head.parts.iter().filter(|p| p.material == material) {
-            geometry.add(part);
+            if material == Material::Hair {
+                geometry.add(part, &hairs::dressed(head, part));
+            } else {
+                geometry.add(part, &part.mesh);
+            }
         }
         geometry
     }
 
-    fn add(&mut self, part: &Part) {
-        let mesh = &part.mesh;
+    /// Adds a part with the mesh that it is drawn as.
+    fn add(&mut self, part: &Part, mesh: &Mesh) {
         let base = self.vertices.len() as u32;
-        let strands = (part.material == Material::Hair).then(|| strand_directions(mesh));
+        let strands = match part.material {
+            Material::Hair => Some(strand_directions(mesh)),
+            Material::Lash => Some(lash_sides(mesh)),
+            _ => None,
+        };
         for (i, p) in mesh.positions.iter().enumerate() {
-            let (bodies, share) = part.between(part.weight[i]);
+            let (bodies, share) = part.between(part.weight.get(i).copied().unwrap_or_default());
             let [tx, ty] = strands.as_ref().map_or([0, 0], |d| octahedral(d[i]));
+            let light = match (&strands, part.material) {
+                (Some(sides), Material::Lash) => sides[i].length() / LASH_HALF_MM,
+                _ => mesh.occlusion[i],
+            };
             self.vertices.push(PartVertex {
                 rest: p.to_array(),
                 normal: mesh.normals[i].to_array(),
                 uv: mesh.uvs[i].to_array(),
-                shares: [unorm(mesh.occlusion[i]), unorm(share), tx, ty],
+                shares: [unorm(light), unorm(share), tx, ty],
                 bodies: [bodies[0] as u8, bodies[1] as u8, 0, 0],
             });
         }
@@ -54,6 +67,20 @@ impl PartGeometry {
 
 /// Iris radii from the pupil at which the ball is behind the lids whatever the gaze.
 const EYE_SEEN_RADII: f32 = 3.4;
+
+/// Half a lash's width that is written as 1, mm. Keep in step with shaders/lash.wgsl.
+const LASH_HALF_MM: f32 = 0.5;
+
+/// From the middle of its blade to each vertex of a lash: they come in pairs across it (see the head shop's `lashes`).
+fn lash_sides(mesh: &Mesh) -> Vec<Vec3> {
+    let p = &mesh.positions;
+    (0..p.len())
+        .map(|i| {
+            let other = p.get(i ^ 1).copied().unwrap_or(p[i]);
+            0.5 * (p[i] - other)
+        })
+        .collect()
+}
 
 /// Which way the strands run at each vertex: where the texture's v grows; down where it does not say.
 fn strand_directions(mesh: &Mesh) -> Vec<Vec3> {

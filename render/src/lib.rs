@@ -25,6 +25,7 @@ mod geometry;
 mod governor;
 mod gpu;
 mod gpu_data;
+mod hairs;
 mod harmonics;
 mod layouts;
 mod maps;

@@ -56,6 +56,7 @@ const EYE: Recipe = Recipe {
 const LASH: Recipe = Recipe {
     vertex: "lash_vertex",
     cull: None,
+    strands: true,
     ..solid("lash")
 };
 const CAVITY: Recipe = Recipe {

@@ -6,6 +6,7 @@ use mouthpiece_rig::{Detail, Head, Material, Subdivision, SubdivisionError};
 
 use crate::folds::Folds;
 use crate::gpu_data::{SkinMoving, SkinStill, unorm};
+use crate::hairs;
 use crate::maps;
 use crate::maps::hairline::Hairline;
 use crate::tier::Smoothness;
@@ -40,7 +41,7 @@ impl SkinGeometry {
             &skin.weight,
             &skin.vermilion,
             &skin.wet,
-            &skin.mesh.occlusion,
+            &hairs::shaded_skin(head),
         ]
         .map(|values| surface.spread(values));
         let marks = maps::landmarks::Landmarks::of(head);

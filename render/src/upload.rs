@@ -22,7 +22,11 @@ pub(crate) fn buffer<T: bytemuck::NoUninit>(
 
 /// An image of plain bytes, with all its halvings.
 pub(crate) fn image(gpu: &Gpu, label: &str, image: Image) -> wgpu::TextureView {
-    let mut levels = image.into_mips();
+    levels(gpu, label, image.into_mips())
+}
+
+/// An image whose halvings are given, largest first.
+pub(crate) fn levels(gpu: &Gpu, label: &str, mut levels: Vec<Image>) -> wgpu::TextureView {
     // What is larger than the card can hold is shown a step coarser.
     let max = gpu.device().limits().max_texture_dimension_2d as usize;
     let fits = |level: &Image| level.width <= max && level.height <= max;

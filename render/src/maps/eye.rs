@@ -5,7 +5,7 @@ use glam::{Vec2, Vec3, vec2, vec3};
 
 use super::image::{Image, root_of_linear};
 use super::noise::{Dice, fractal, value};
-use super::strokes::{Blend, Field, Stroke};
+use super::strokes::{Field, Stroke};
 use super::{parallel_rows, ramp};
 
 /// Iris radii from the middle of the map to its side. Keep in step with shaders/eye.wgsl.
@@ -91,14 +91,11 @@ fn veins(side: usize) -> Field<1> {
                 break;
             }
             let texel = |q: Vec2| (q + REACH) * scale;
-            field.draw(
-                &Stroke {
-                    points: [texel(p), texel(next), texel(far)],
-                    half_width: 0.016 * scale,
-                    strength: [strength],
-                },
-                Blend::Cover,
-            );
+            field.draw(&Stroke {
+                points: [texel(p), texel(next), texel(far)],
+                half_width: 0.016 * scale,
+                strength: [strength],
+            });
             p = next;
             strength *= 0.84;
         }

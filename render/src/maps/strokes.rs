@@ -1,4 +1,4 @@
-//! Tapered strokes: strands of the hair's map, veins of the eye.
+//! Tapered strokes: veins of the eye.
 
 use glam::Vec2;
 
@@ -20,15 +20,6 @@ pub(crate) struct Stroke<const N: usize> {
     pub(crate) strength: [f32; N],
 }
 
-/// How strokes meet.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) enum Blend {
-    /// Covers what is left uncovered.
-    Cover,
-    /// Replaces what lies under it, without fading along its length.
-    Over,
-}
-
 impl<const N: usize> Field<N> {
     pub(crate) fn new(width: usize, height: usize, value: [f32; N]) -> Self {
         Self {
@@ -38,8 +29,8 @@ impl<const N: usize> Field<N> {
         }
     }
 
-    /// Lays a stroke; what falls outside is cut off.
-    pub(crate) fn draw(&mut self, stroke: &Stroke<N>, blend: Blend) {
+    /// Lays a stroke over what is left uncovered; what falls outside is cut off.
+    pub(crate) fn draw(&mut self, stroke: &Stroke<N>) {
         let [a, b, c] = stroke.points;
         let length = a.distance(b) + b.distance(c);
         let steps = (length / (stroke.half_width * 1.2).clamp(0.5, 2.0))
@@ -55,17 +46,12 @@ impl<const N: usize> Field<N> {
             self.dab(
                 p,
                 stroke.half_width * taper,
-                if blend == Blend::Over {
-                    stroke.strength
-                } else {
-                    stroke.strength.map(|s| s * fade)
-                },
-                blend,
+                stroke.strength.map(|s| s * fade),
             );
         }
     }
 
-    fn dab(&mut self, p: Vec2, half_width: f32, strength: [f32; N], blend: Blend) {
+    fn dab(&mut self, p: Vec2, half_width: f32, strength: [f32; N]) {
         let reach = half_width + 0.7;
         let x0 = (p.x - reach).floor().max(0.0) as usize;
         let y0 = (p.y - reach).floor().max(0.0) as usize;
@@ -83,10 +69,7 @@ impl<const N: usize> Field<N> {
                 }
                 let value = &mut self.values[y * self.width + x];
                 for (value, strength) in value.iter_mut().zip(strength) {
-                    match blend {
-                        Blend::Cover => *value = value.max(cover * strength),
-                        Blend::Over => *value += (strength - *value) * cover,
-                    }
+                    *value = value.max(cover * strength);
                 }
             }
         }

@@ -1,6 +1,9 @@
-// Short hair: cards of painted strands over a dark cap; along the strand the highlight of Kajiya and Kay, shifted
-// twice (Marschner's two lobes, in little). Lit at the vertices; the map gives each strand its own share of that.
-// The map: R tone, B shift, A cover. The cap has v below 0 and shows no strands.
+// Short hair: cards of painted strands over a dark cap. The highlights are those of a fibre (Marschner et al. 2003,
+// on the tangent as Kajiya and Kay have it): light mirrored by the scales, tilted towards the root and white;
+// light that went in, was mirrored at the back and came out tilted towards the tip, wider and of the hair's colour;
+// and light from behind that shines through. What changes slowly is worked out at the vertices; where along the strand a
+// highlight lies is at the pixel, so that every strand has its own.
+// The map: R tone, G light between strands, B shift, A cover. On the cap v is -1 and less towards its edge.
 
 #include "part"
 #include "light"
@@ -11,27 +14,31 @@
 
 override SAMPLES: u32 = 4u;
 // Colour of the strands, linear, from dark to light ones.
-const DARK: vec3<f32> = vec3(0.016, 0.0095, 0.0062);
-const PALE: vec3<f32> = vec3(0.150, 0.092, 0.056);
-
+const DARK: vec3<f32> = vec3(0.014, 0.0082, 0.0052);
+const PALE: vec3<f32> = vec3(0.165, 0.098, 0.057);
+// What is left of white light that crossed a strand.
+const THROUGH: vec3<f32> = vec3(0.46, 0.27, 0.15);
 // Colour of what the strands' surface mirrors: white on a single hair; between many it has met others.
-const SHINE: vec3<f32> = vec3(1.0, 0.80, 0.62);
+const SHINE: vec3<f32> = vec3(1.0, 0.86, 0.72);
+
+// Tilt of the scales as the tangent's shift, and how much it differs from strand to strand.
+const TILT: f32 = 0.10;
+const JITTER: f32 = 0.34;
+// One over twice the squared width of the mirrored lobe, in octaves; of the coloured one.
+const SHARP: f32 = 95.0;
+const BROAD: f32 = 15.0;
+
+// Half the width of a single hair at its root, mm: of two that lie together.
+const SINGLE_MM: f32 = 0.075;
 
 struct HairFragment {
     @builtin(position) clip: vec4<f32>,
-    // Place in the map; light that strands mirror: at their surface, and once through them.
+    // Place in the map; cosines of the half-way direction to tangent and normal.
     @location(0) places: vec4<f32>,
-    // Light that the strands' colour multiplies.
-    @location(1) light: vec3<f32>,
-}
-
-// Kajiya and Kay's highlight to the eighth power of the squared sine: sharper ones square it again.
-fn strand_lobe(t: vec3<f32>, h: vec3<f32>) -> f32 {
-    let along = dot(t, h);
-    let s = max(1.0 - along * along, 0.0);
-    let s2 = s * s;
-    let s4 = s2 * s2;
-    return s4 * s4;
+    // Light that the strands' colour multiplies; key light that highlights may have.
+    @location(1) light: vec4<f32>,
+    // Light from behind through the strands; cover of a single hair, 2 on cards, whose map has theirs.
+    @location(2) behind: vec4<f32>,
 }
 
 @vertex
@@ -41,44 +48,68 @@ fn hair_vertex(in: PartVertex) -> HairFragment {
     let v = normalize(frame.eye.xyz - at.world);
     let t = normalize((frame.bodies[in.bodies.x] * vec4(strand_direction(in.shares.zw), 0.0)).xyz);
     let l = frame.key_dir.xyz;
+    let r = frame.rim_dir.xyz;
     let h = normalize(l + v);
     let deep = in.shares.x;
     let facing = clamp(dot(n, l) * 0.65 + 0.35, 0.0, 1.0);
     let along = dot(t, l);
     // Hair lies outside all that could shade it: no look at the shadow map.
     let key = frame.key_colour.rgb;
-    let rim = frame.rim_colour.rgb * (max(dot(n, frame.rim_dir.xyz) + 0.25, 0.0) * deep);
-    let rim_h = normalize(frame.rim_dir.xyz + v);
-    // Scales tilt the mirror towards the root, light that went through comes out towards the tip.
-    let tight = strand_lobe(normalize(t - n * 0.10), h);
-    let tight4 = tight * tight * tight * tight;
-    let lit = facing * deep;
-    let mirrored = tight4 * tight4 * lit;
-    let broad = strand_lobe(normalize(t + n * 0.16), h);
-    let through = broad * broad * lit;
+    let rim = frame.rim_colour.rgb * (max(dot(n, r) + 0.25, 0.0) * deep);
+    // Through: most where the lamp is behind and the outline thin.
+    let thin = 1.0 - clamp(dot(n, v), 0.0, 1.0);
+    let cone = dot(t, r) + dot(t, v);
+    let ahead = max(-dot(r, v) * 0.6 + 0.4, 0.0);
+    let behind = frame.rim_colour.rgb * (exp2(-cone * cone * 4.0) * ahead * thin * thin * deep * deep);
 
     var out: HairFragment;
     out.clip = frame.clip_from_world * vec4(at.world, 1.0);
-    out.light = key * (facing * sqrt(max(1.0 - along * along, 0.0)) * deep)
+    var uv = in.uv;
+    var cover = 2.0;
+    if uv.x > 1.5 {
+        // A single hair: never drawn narrower than a pixel; what it would lack in width it lacks in cover.
+        let right = uv.x > 5.5;
+        let up = vec3(frame.clip_from_world[0].y, frame.clip_from_world[1].y, frame.clip_from_world[2].y);
+        let pixel = 2.0 * out.clip.w / (length(up) * frame.picture.y);
+        let half = SINGLE_MM * (1.0 - 0.8 * uv.y * uv.y);
+        let drawn = max(half, 0.5 * pixel);
+        let across = normalize(cross(v, t)) * select(-drawn, drawn, right);
+        out.clip = frame.clip_from_world * vec4(at.world + across, 1.0);
+        cover = half / drawn;
+        uv = vec2(uv.x - select(2.0, 6.0, right), 0.35 + 0.2 * uv.y);
+    }
+    out.light = vec4(key * (facing * sqrt(max(1.0 - along * along, 0.0)) * deep)
         + (frame.fill_colour.rgb * max(dot(n, frame.fill_dir.xyz) * 0.5 + 0.5, 0.0) + ambient_from(n)) * (deep * deep)
-        + rim * 0.7;
-    let bright = dot(key, vec3(0.3333));
-    let rim_bright = dot(rim, vec3(0.3333)) * strand_lobe(t, rim_h);
-    out.places = vec4(in.uv, 0.075 * mirrored * bright + 0.022 * rim_bright * deep, 1.5 * through * bright);
+        + rim * 0.7, dot(key, vec3(0.3333)) * facing * deep);
+    let rim_along = dot(t, normalize(r + v));
+    out.behind = vec4(behind * THROUGH * 0.35
+        + SHINE * (0.022 * dot(rim, vec3(0.3333)) * exp2(-rim_along * rim_along * 12.0)), cover);
+    out.places = vec4(uv, dot(t, h), dot(n, h));
     return out;
 }
 
 @fragment
 fn hair(in: HairFragment) -> @location(0) vec4<f32> {
-    let map = textureSample(hair_map, map_sampler, in.places.xy);
-    let cap = in.places.y < 0.0;
-    let cover = select(map.a, 1.0, cap);
-    // Without samples to cover, a strand is there or not.
-    if cover < select(0.08, 0.45, SAMPLES == 1u) {
+    let cap = in.places.y < -0.5;
+    // Towards its edge the cap shows the strands' ragged roots, then nothing.
+    let along = select(in.places.y, 0.55 * (2.0 + in.places.y), cap);
+    let map = textureSample(hair_map, map_sampler, vec2(in.places.x, along));
+    let card = select(map.a, max(map.a, 1.0 - 2.5 * (-1.0 - in.places.y)), cap);
+    let cover = select(card, in.behind.w, in.behind.w < 1.5);
+    // Whole samples: every card rounds alike. Keep in step with maps/hair.rs.
+    let samples = f32(SAMPLES);
+    let covered = floor(cover * samples + 0.5);
+    if covered < 0.5 {
         discard;
     }
-    let tone = select(map.r, 0.46, cap);
-    let base = mix(DARK, PALE, tone * tone);
-    let light = base * (in.light + vec3(in.places.w * map.b)) + SHINE * (in.places.z * (0.25 + map.b) * tone);
-    return vec4(developed(light).rgb, cover);
+    let shift = (map.b - 0.5) * JITTER;
+    let mirrored = in.places.z + (shift - TILT) * in.places.w;
+    let coloured = in.places.z + (shift + 1.5 * TILT) * in.places.w;
+    let base = mix(DARK, PALE, map.r * map.r);
+    let near = map.g * map.g;
+    let light = base * (in.light.rgb * map.g)
+        + (SHINE * (0.055 * exp2(-mirrored * mirrored * SHARP))
+            + base * (1.35 * exp2(-coloured * coloured * BROAD))) * (in.light.w * near * (0.4 + map.b))
+        + in.behind.rgb * map.g;
+    return vec4(developed(light).rgb, covered / samples);
 }

@@ -1,12 +1,26 @@
-// Lashes: nearly black, lit from both sides. Lit at their vertices. They turn with their lid: uv.x is where the root
-// lies over the eyeball, in its radii from its centre; uv.y runs from root (0) to tip (1), plus 2 on the lower lid.
+// Lashes: nearly black blades, lit from both sides, with a fibre's highlight. Lit at their vertices. They turn with their
+// lid: uv.x is where the root lies over the eyeball, in its radii from its centre; uv.y runs from root (0) to tip (1), plus
+// 2 on the lower lid. A blade is never drawn narrower than a pixel: what it would lack in width it lacks in cover, so
+// that thin tips fade instead of breaking into dots.
 
 #include "part"
 #include "light"
 
+override SAMPLES: u32 = 4u;
+// What a whole share of half a width means, mm. Keep in step with geometry.rs.
+const HALF_MM: f32 = 0.5;
+// An upper lash is finer than its blade at the root, a lower one about as wide.
+const FINE_UPPER: f32 = 0.62;
+const FINE_LOWER: f32 = 1.25;
+
+// How far a tip curls up, and down on the lower lid, beyond its blade.
+const CURL_UP_MM: f32 = 1.1;
+const CURL_DOWN_MM: f32 = 1.3;
+
 struct LashFragment {
     @builtin(position) clip: vec4<f32>,
-    @location(0) light: vec3<f32>,
+    // Light; w: cover.
+    @location(0) light: vec4<f32>,
 }
 
 // How high over the ball's equator a lid's margin lies at a place across it, radians.
@@ -23,20 +37,43 @@ fn lash_vertex(in: PartVertex) -> LashFragment {
     let c = cos(turn);
     let s = sin(turn);
     let centre = frame.eyeballs[side].xyz;
-    let off = in.rest - centre;
+    // The blade's middle, then out again as far as a pixel asks.
+    let across = strand_direction(in.shares.zw);
+    let half = in.shares.x * HALF_MM;
+    // Seen from before, lashes point at the eye that sees them: their curl shows their length.
+    let tip = fract(in.uv.y * 0.999);
+    let lower = in.uv.y > 1.5;
+    let curl = select(tip * tip * CURL_UP_MM, -tip * CURL_DOWN_MM, lower);
+    let off = in.rest + vec3(0.0, curl, 0.0) - across * half - centre;
     var turned = in;
     turned.rest = centre + vec3(off.x, off.y * c + off.z * s, off.z * c - off.y * s);
     let at = placed(turned, 0.0);
     let n = normalize(at.normal);
+    let outward = (frame.bodies[in.bodies.x] * vec4(across, 0.0)).xyz;
+    let distance = (frame.clip_from_world * vec4(at.world, 1.0)).w;
+    let up = vec3(frame.clip_from_world[0].y, frame.clip_from_world[1].y, frame.clip_from_world[2].y);
+    let pixel = 2.0 * distance / (length(up) * frame.picture.y);
+    let fine = half * select(FINE_UPPER, FINE_LOWER, lower);
+    let drawn = max(fine, pixel * 0.5);
+
     // Brown where light gets through the thin tips.
-    let albedo = mix(vec3(0.014, 0.010, 0.009), vec3(0.040, 0.026, 0.019), fract(in.uv.y * 0.999));
+    let albedo = mix(vec3(0.010, 0.007, 0.006), vec3(0.040, 0.026, 0.019), tip);
+    let h = normalize(frame.key_dir.xyz + normalize(frame.eye.xyz - at.world));
+    let along = dot(cross(outward, n), h);
+    let shine = 0.016 * exp2(-along * along * 20.0) * dot(frame.key_colour.rgb, vec3(0.3333));
     var out: LashFragment;
-    out.clip = frame.clip_from_world * vec4(at.world, 1.0);
-    out.light = albedo * (ambient_from(n) + 0.5 * frame.key_colour.rgb * abs(dot(n, frame.key_dir.xyz)));
+    out.clip = frame.clip_from_world * vec4(at.world + outward * drawn, 1.0);
+    out.light = vec4(albedo * (ambient_from(n) + 0.5 * frame.key_colour.rgb * abs(dot(n, frame.key_dir.xyz))) + shine,
+        fine / drawn);
     return out;
 }
 
 @fragment
 fn lash(in: LashFragment) -> @location(0) vec4<f32> {
-    return developed(in.light);
+    let samples = f32(SAMPLES);
+    let covered = floor(in.light.w * samples + select(0.5, 0.7, SAMPLES == 1u));
+    if covered < 0.5 {
+        discard;
+    }
+    return vec4(developed(in.light.rgb).rgb, covered / samples);
 }

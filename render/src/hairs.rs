@@ -1,0 +1,356 @@
+//! What is done to a head's hair before it is drawn: wide cards are split into narrow ones that do not end
+//! together, the cap fades where the skin's own painted roots begin, and short fine hairs grow across the
+//! hairline. All from the head's own parts and features, so that fitted heads get it too.
+//!
+//! Hair that is not made of cards (see the head shop's `hair`) is left as it is.
+
+use glam::{Vec2, Vec3, vec2};
+use mouthpiece_rig::{Head, Material, Mesh, Part};
+
+use crate::maps::hair::{COLUMNS, DENSE, LOOSE};
+use crate::maps::hairline::Hairline;
+use crate::maps::noise::Dice;
+use crate::maps::ramp;
+
+/// Cards wider than this are split, mm.
+const WIDE_MM: f32 = 6.0;
+/// Into as many at most.
+const SPLIT_MAX: usize = 3;
+/// How deep within the hairline the cap is whole, and how deep it is gone, mm.
+const CAP_MM: [f32; 2] = [11.0, 4.0];
+/// Short hairs a square mm, and how far off the hairline they grow, outside and inside, mm.
+const FINE_DENSITY: f32 = 0.30;
+const FINE_MM: [f32; 2] = [-4.5, 6.0];
+/// Least light at the roots of cards and on the cap, as a share of what the head says is missing there.
+const LEAST_LIGHT: f32 = 0.45;
+/// Shade that hair throws on the skin before it: how much, and how far off and within the hairline, mm.
+const SHADE: f32 = 0.42;
+const SHADE_MM: [f32; 2] = [-9.0, 5.0];
+/// `uv.x` of a single hair: 2 on its left side, 6 on its right one, plus the place in the map that gives its tone. Keep in
+/// step with shaders/hair.wgsl, which gives it its width.
+const SINGLE: [f32; 2] = [2.0, 6.0];
+/// How far from a card's root its growth is still known, mm.
+const KNOWN_MM: f32 = 22.0;
+
+/// A ribbon: pairs of vertices from root to tip.
+#[derive(Clone, Debug)]
+struct Card {
+    /// Number of its first vertex and how many pairs it has.
+    first: usize,
+    pairs: usize,
+}
+
+/// The hair as it is drawn.
+pub(crate) fn dressed(head: &Head, part: &Part) -> Mesh {
+    let mesh = &part.mesh;
+    let cards = cards(mesh);
+    if cards.is_empty() {
+        return mesh.clone();
+    }
+    let mut out = Mesh::default();
+    let hairline = Hairline::of(head);
+    let mut dice = Dice::new(4711);
+    // Outermost first, as the cards lie: what is hidden need not be shaded.
+    if let Some(hairline) = &hairline {
+        grow_fine(&mut out, head, hairline, &roots(mesh, &cards), &mut dice);
+    }
+    for card in &cards {
+        if mesh.uvs[card.first].x * COLUMNS as f32 > (DENSE + LOOSE) as f32 {
+            single(&mut out, mesh, card, &mut dice);
+        } else {
+            split(&mut out, mesh, card, &mut dice);
+        }
+    }
+    keep_cap(&mut out, mesh, head, hairline.as_ref());
+    out
+}
+
+/// The cards, in the order of the mesh.
+fn cards(mesh: &Mesh) -> Vec<Card> {
+    let mut cards: Vec<Card> = Vec::new();
+    let v = |i: usize| mesh.uvs[i].y;
+    let mut i = 0;
+    while i + 1 < mesh.uvs.len() {
+        if v(i) != 0.0 || v(i + 1) != 0.0 {
+            i += 1;
+            continue;
+        }
+        let first = i;
+        let mut pairs = 1;
+        while first + 2 * pairs + 1 < mesh.uvs.len()
+            && v(first + 2 * pairs) > v(first + 2 * pairs - 2)
+            && v(first + 2 * pairs) == v(first + 2 * pairs + 1)
+        {
+            pairs += 1;
+        }
+        if pairs > 1 {
+            cards.push(Card { first, pairs });
+        }
+        i = first + 2 * pairs;
+    }
+    cards
+}
+
+/// Where cards begin and which way they grow.
+fn roots(mesh: &Mesh, cards: &[Card]) -> Vec<(Vec3, Vec3)> {
+    let middle = |i: usize| 0.5 * (mesh.positions[i] + mesh.positions[i + 1]);
+    cards
+        .iter()
+        .map(|card| {
+            let root = middle(card.first);
+            let along = middle(card.first + 2) - root;
+            (root, along.normalize_or(Vec3::NEG_Y))
+        })
+        .collect()
+}
+
+/// Adds a ribbon's next pair.
+fn push_pair(
+    out: &mut Mesh,
+    left: Vec3,
+    right: Vec3,
+    normals: [Vec3; 2],
+    uv: [Vec2; 2],
+    light: f32,
+) {
+    out.positions.extend([left, right]);
+    out.normals.extend(normals);
+    out.uvs.extend(uv);
+    out.occlusion.extend([light, light]);
+}
+
+/// Joins the pairs from vertex `first` on; counter-clockwise from outside.
+fn join(out: &mut Mesh, first: usize) {
+    let count = out.positions.len();
+    for a in (first as u32..count as u32 - 2).step_by(2) {
+        out.triangles.push([a, a + 2, a + 3]);
+        out.triangles.push([a, a + 3, a + 1]);
+    }
+}
+
+/// A card, or the narrow ones that stand for it: each shows its part of the column, strays a little and ends where
+/// it likes.
+fn split(out: &mut Mesh, mesh: &Mesh, card: &Card, dice: &mut Dice) {
+    let pair = |i: usize| {
+        let at = card.first + 2 * i;
+        (mesh.positions[at], mesh.positions[at + 1])
+    };
+    let width = (0..card.pairs)
+        .map(|i| pair(i).0.distance(pair(i).1))
+        .fold(0.0, f32::max);
+    let parts = ((width / WIDE_MM).ceil() as usize).clamp(1, SPLIT_MAX);
+    let share = 1.0 / parts as f32;
+    for part in 0..parts {
+        let first = out.positions.len();
+        // What they show overlaps, and so do they.
+        let wide = if parts > 1 { 0.72 * share } else { 0.5 };
+        let middle = if parts > 1 {
+            ((part as f32 + 0.5) * share + 0.10 * dice.spread()).clamp(wide, 1.0 - wide)
+        } else {
+            0.5
+        };
+        let stray = if parts > 1 { 0.32 * dice.spread() } else { 0.0 };
+        let raised = if parts > 1 { 0.9 * dice.spread() } else { 0.0 };
+        let longer = if parts > 1 {
+            0.72 + 0.42 * dice.roll()
+        } else {
+            1.0
+        };
+        let shade = if parts > 1 {
+            0.74 + 0.26 * dice.roll()
+        } else {
+            1.0
+        };
+        for i in 0..card.pairs {
+            let at = card.first + 2 * i;
+            let v = mesh.uvs[at].y;
+            // The same way, shorter or longer: a place between the card's own pairs, or past the last.
+            let place = i as f32 * longer;
+            let from = (place as usize).min(card.pairs - 2);
+            let t = place - from as f32;
+            let (a, b) = (pair(from), pair(from + 1));
+            let (left, right) = (a.0.lerp(b.0, t), a.1.lerp(b.1, t));
+            let n = card.first + 2 * from;
+            let normal =
+                |side: usize| mesh.normals[n + side].lerp(mesh.normals[n + 2 + side], t.min(1.0));
+            let (nl, nr) = (normal(0), normal(1));
+            let across = |s: f32| left.lerp(right, s + stray * v * v);
+            let lift = (nl + nr).normalize_or(Vec3::Y) * (raised * v);
+            let turned = |s: f32| nl.lerp(nr, s).normalize_or(nl);
+            let u = |s: f32| mesh.uvs[at].x + (mesh.uvs[at + 1].x - mesh.uvs[at].x) * s;
+            let (low, high) = (middle - wide, middle + wide);
+            // Rounded like a lock of its own.
+            let round = (right - left).normalize_or_zero() * if parts > 1 { 0.25 } else { 0.0 };
+            push_pair(
+                out,
+                across(low) + lift,
+                across(high) + lift,
+                [
+                    (turned(low) - round).normalize_or(nl),
+                    (turned(high) + round).normalize_or(nr),
+                ],
+                [vec2(u(low), v), vec2(u(high), v)],
+                lightened(mesh.occlusion[at]) * shade,
+            );
+        }
+        join(out, first);
+    }
+}
+
+/// Short fine hairs on both sides of the hairline, as the cards near by grow, shorter the farther out.
+fn grow_fine(
+    out: &mut Mesh,
+    head: &Head,
+    hairline: &Hairline,
+    roots: &[(Vec3, Vec3)],
+    dice: &mut Dice,
+) {
+    let skin = &head.skin.mesh;
+    let depth: Vec<f32> = skin.uvs.iter().map(|uv| hairline.depth_mm(*uv)).collect();
+    let [outside, inside] = FINE_MM;
+    for t in &skin.triangles {
+        let corner = t.map(|i| i as usize);
+        if corner.iter().all(|&i| depth[i] < outside) || corner.iter().all(|&i| depth[i] > inside) {
+            continue;
+        }
+        let [a, b, c] = corner.map(|i| skin.positions[i]);
+        let area = 0.5 * (b - a).cross(c - a).length();
+        let count = (area * FINE_DENSITY + dice.roll()) as usize;
+        for _ in 0..count {
+            let (p, q) = (dice.roll(), dice.roll());
+            let (p, q) = if p + q > 1.0 {
+                (1.0 - p, 1.0 - q)
+            } else {
+                (p, q)
+            };
+            let mix = |v: [f32; 3]| v[0] + (v[1] - v[0]) * p + (v[2] - v[0]) * q;
+            let deep = mix(corner.map(|i| depth[i]));
+            let root = a + (b - a) * p + (c - a) * q;
+            let edge = ramp(outside, inside, deep);
+            // The farther out the fewer.
+            if deep < outside || deep > inside || dice.roll() > 0.15 + edge {
+                continue;
+            }
+            let known = roots
+                .iter()
+                .map(|(at, along)| (at.distance_squared(root), *along))
+                .min_by(|a, b| a.0.total_cmp(&b.0));
+            let Some((_, along)) = known.filter(|k| k.0 < KNOWN_MM * KNOWN_MM) else {
+                continue;
+            };
+            let normal = corner
+                .iter()
+                .map(|&i| skin.normals[i])
+                .sum::<Vec3>()
+                .normalize_or(Vec3::Z);
+            let length = (3.0 + 7.0 * edge) * (0.7 + 0.6 * dice.roll());
+            fine_hair(out, root, normal, along, length, dice);
+        }
+    }
+}
+
+/// One of them, from the skin and along it.
+fn fine_hair(out: &mut Mesh, root: Vec3, normal: Vec3, along: Vec3, length: f32, dice: &mut Dice) {
+    const STEPS: usize = 2;
+    let first = out.positions.len();
+    let flat = (along - normal * along.dot(normal)).normalize_or(normal.any_orthonormal_vector());
+    let side = normal.cross(flat);
+    let mut heading = (flat + side * (0.9 * dice.spread())).normalize_or(flat);
+    let bend = side * (0.8 * dice.spread());
+    let tone = 0.5 * dice.roll();
+    let light = 0.75 + 0.2 * dice.roll();
+    let mut place = root;
+    for i in 0..=STEPS {
+        let v = i as f32 / STEPS as f32;
+        let at = place + normal * (0.1 + 1.1 * v * (1.0 - 0.35 * v));
+        push_pair(
+            out,
+            at,
+            at,
+            [normal; 2],
+            SINGLE.map(|x| vec2(x + tone, v)),
+            light,
+        );
+        heading = (heading + bend * 0.5).normalize_or(heading);
+        place += heading * (length / STEPS as f32);
+    }
+    join(out, first);
+}
+
+/// Two hairs in place of a card that shows a few: they have the width of hairs at any distance.
+fn single(out: &mut Mesh, mesh: &Mesh, card: &Card, dice: &mut Dice) {
+    for _ in 0..2 {
+        let first = out.positions.len();
+        let [from, to] = [dice.roll(), dice.roll()];
+        let tone = 0.5 * dice.roll();
+        for i in 0..card.pairs {
+            let at = card.first + 2 * i;
+            let v = mesh.uvs[at].y;
+            let place = mesh.positions[at].lerp(mesh.positions[at + 1], from + (to - from) * v);
+            push_pair(
+                out,
+                place,
+                place,
+                [(mesh.normals[at] + mesh.normals[at + 1]).normalize_or(Vec3::Y); 2],
+                SINGLE.map(|x| vec2(x + tone, v)),
+                mesh.occlusion[at],
+            );
+        }
+        join(out, first);
+    }
+}
+
+/// Light scatters on between strands: what lies deep is not black.
+fn lightened(occlusion: f32) -> f32 {
+    occlusion + (1.0 - occlusion) * LEAST_LIGHT
+}
+
+/// The occlusion of each skin vertex, with what the hair before it takes away.
+pub(crate) fn shaded_skin(head: &Head) -> Vec<f32> {
+    let mesh = &head.skin.mesh;
+    let has_hair = head.parts.iter().any(|p| p.material == Material::Hair);
+    let hairline = if has_hair { Hairline::of(head) } else { None };
+    let Some(hairline) = hairline else {
+        return mesh.occlusion.clone();
+    };
+    let shade = |uv: &Vec2| SHADE * ramp(SHADE_MM[0], SHADE_MM[1], hairline.depth_mm(*uv));
+    mesh.occlusion
+        .iter()
+        .zip(&mesh.uvs)
+        .map(|(light, uv)| light * (1.0 - shade(uv)))
+        .collect()
+}
+
+/// The cap, with roots to show and fading towards the hairline: there the skin shows painted ones.
+fn keep_cap(out: &mut Mesh, mesh: &Mesh, head: &Head, hairline: Option<&Hairline>) {
+    let skin = &head.skin.mesh;
+    // Where strands' columns lie round the head: to and fro over the dense ones.
+    let centre = mesh.positions.iter().sum::<Vec3>() / mesh.positions.len().max(1) as f32;
+    let mut place = vec![u32::MAX; mesh.positions.len()];
+    for (i, p) in mesh.positions.iter().enumerate() {
+        if mesh.uvs[i].y >= -0.5 {
+            continue;
+        }
+        place[i] = out.positions.len() as u32;
+        let depth = hairline.map_or(f32::INFINITY, |line| {
+            let nearest = skin.positions.iter().zip(&skin.uvs).min_by(|a, b| {
+                a.0.distance_squared(*p)
+                    .total_cmp(&b.0.distance_squared(*p))
+            });
+            nearest.map_or(f32::INFINITY, |(_, uv)| line.depth_mm(*uv))
+        });
+        let faded = ((CAP_MM[0] - depth) / (CAP_MM[0] - CAP_MM[1])).clamp(0.0, 1.6);
+        let turn = (p.x - centre.x).atan2(p.z - centre.z) / std::f32::consts::TAU;
+        let to_and_fro = ((turn * 14.0).rem_euclid(2.0) - 1.0).abs();
+        out.positions.push(*p);
+        out.normals.push(mesh.normals[i]);
+        out.uvs.push(vec2(
+            (0.05 + to_and_fro * (DENSE as f32 - 0.1)) / COLUMNS as f32,
+            -1.0 - faded,
+        ));
+        out.occlusion.push(lightened(mesh.occlusion[i]));
+    }
+    let kept = mesh.triangles.iter().map(|t| t.map(|i| place[i as usize]));
+    out.triangles
+        .extend(kept.filter(|t| t.iter().all(|&i| i != u32::MAX)));
+}
