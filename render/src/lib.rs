@@ -46,6 +46,8 @@ mod upload;
 mod view;
 mod warm_up;
 mod window;
+#[cfg(test)]
+mod wrong_shader_tests;
 
 pub use environment::Environment;
 pub use error::RenderError;

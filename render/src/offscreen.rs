@@ -121,6 +121,12 @@ impl Offscreen {
         self.renderer.extent()
     }
 
+    /// As `Pipelines::edit`.
+    #[cfg(test)]
+    pub(crate) fn edit_shader(&mut self, edit: Option<[&str; 3]>) {
+        self.renderer.pipelines.edit(edit);
+    }
+
     /// Pictures submitted and not taken.
     #[must_use]
     pub fn in_flight(&self) -> usize {

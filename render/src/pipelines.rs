@@ -60,6 +60,22 @@ impl Pipelines {
         })
     }
 
+    /// Goes back to the shaders as they are, or to them with a text of one file changed: for tests that are to fail.
+    #[cfg(test)]
+    pub(crate) fn edit(&mut self, edit: Option<[&str; 3]>) {
+        self.texts = shader::resolve_all().unwrap();
+        if let Some([file, old, new]) = edit {
+            let (_, text) = self
+                .texts
+                .iter_mut()
+                .find(|(name, _)| *name == file)
+                .unwrap();
+            assert!(text.contains(old), "{file}.wgsl has no {old:?}");
+            *text = text.replace(old, new);
+        }
+        self.made = std::array::from_fn(|_| OnceLock::new());
+    }
+
     /// The pipeline that draws that.
     pub(crate) fn get(&self, draw: Draw) -> &wgpu::RenderPipeline {
         self.made[draw as usize].get_or_init(|| self.make(draw))
