@@ -155,9 +155,9 @@ pub struct Framing {
 }
 
 /// Share of the head's height left free above it.
-const ROOM_ABOVE: f32 = 0.13;
+const ROOM_ABOVE: f32 = 0.07;
 /// Share of the head's height shown below the chin.
-const ROOM_BELOW: f32 = 0.22;
+const ROOM_BELOW: f32 = 0.11;
 /// Share of the head's width left free on each side: what it needs to turn and tilt.
 const ROOM_BESIDE: f32 = 0.10;
 /// Half the diagonal of a 36 x 24 mm frame over the focal length of 85 mm.
