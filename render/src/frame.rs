@@ -3,6 +3,7 @@
 use glam::{Mat4, Vec3, Vec4};
 use mouthpiece_rig::{Body, Head, KeyFrame};
 
+use crate::gaze;
 use crate::gpu_data::Frame;
 use crate::maps::zones;
 use crate::openings::Open;
@@ -42,7 +43,11 @@ pub(crate) fn data(
     };
     let framing = extent.frame(view.camera, size);
     let studio = Studio::portrait(view.camera.yaw_rad(), &view.environment);
-    let bodies = pose.bodies(&key_frame.state).map(Mat4::from);
+    let mut bodies = pose.bodies(&key_frame.state);
+    gaze::converge(pose, &mut bodies);
+    let ahead = bodies[Body::Skull as usize].transform_vector3(Vec3::Z);
+    let pupil = gaze::pupil(studio.before(ahead), &key_frame.state, key_frame.time);
+    let bodies = bodies.map(Mat4::from);
     let mut body_rows = [Mat4::IDENTITY.to_cols_array_2d(); 8];
     for (row, body) in body_rows.iter_mut().zip(bodies) {
         *row = body.to_cols_array_2d();
@@ -88,6 +93,7 @@ pub(crate) fn data(
             .normalize_or(Vec3::Z)
             .extend(0.0)
             .to_array(),
+        pupil: [pupil, 0.0, 0.0, 0.0],
     }
 }
 

@@ -30,6 +30,7 @@ pub(crate) struct Frame {
     pub(crate) picture: [f32; 4],
     pub(crate) wrinkled: [[f32; 4]; 4],
     pub(crate) toward_camera: [f32; 4],
+    pub(crate) pupil: [f32; 4],
 }
 
 /// The part of a skin vertex that moves: head's frame, mm.

@@ -97,7 +97,6 @@ impl Harmonics {
     }
 
     /// What a white matte surface that faces `n` (unit length) returns. The shader's `ambient_from`, on the processor.
-    #[cfg(test)]
     pub(crate) fn returned(&self, n: Vec3) -> Vec3 {
         let one = |m: &Moments| m.mean + 2.0 * n.dot(m.first) + 1.25 * n.dot(m.second.0 * n);
         Vec3::from([one(&self.0[0]), one(&self.0[1]), one(&self.0[2])])

@@ -21,6 +21,7 @@ mod environment;
 mod error;
 mod folds;
 mod frame;
+mod gaze;
 mod geometry;
 mod governor;
 mod gpu;

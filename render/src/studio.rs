@@ -60,6 +60,14 @@ impl Studio {
         }
     }
 
+    /// Luminance of a white card before the face that faces where it does.
+    pub(crate) fn before(&self, ahead: Vec3) -> f32 {
+        let lamps = [&self.key, &self.fill, &self.rim]
+            .map(|lamp| lamp.colour * lamp.direction.dot(ahead).max(0.0));
+        let light = self.ambient.returned(ahead) + lamps.into_iter().sum::<Vec3>();
+        light.dot(vec3(0.2126, 0.7152, 0.0722)).max(0.0)
+    }
+
     /// World to the key lamp's picture of the head: x and y -1..1, depth 0..1.
     pub(crate) fn shadow_from_world(&self, extent: &Extent) -> Mat4 {
         let centre = (extent.min + extent.max) * 0.5;

@@ -10,8 +10,8 @@ use super::{parallel_rows, ramp};
 
 /// Iris radii from the middle of the map to its side. Keep in step with shaders/eye.wgsl.
 const REACH: f32 = 3.0;
-/// Radius of the pupil in iris radii: that of a lit room.
-const PUPIL: f32 = 0.39;
+/// Radius of the painted pupil in iris radii; the shader widens and narrows it. Keep in step with shaders/eye.wgsl.
+const PUPIL: f32 = 0.36;
 
 /// Square root of linear colour; a: 1 in the iris, 0 in the white.
 pub(crate) fn paint(side: usize) -> Image {
@@ -23,7 +23,7 @@ pub(crate) fn paint(side: usize) -> Image {
             let at = (vec2(x as f32, y as f32) + 0.5) / side as f32 * (2.0 * REACH) - REACH;
             let r = at.length();
             let white = sclera(at, veins.values[y * side + x][0]);
-            let share = ramp(1.07, 0.94, r);
+            let share = ramp(1.12, 0.92, r);
             let colour = if share > 0.0 {
                 white.lerp(iris(at, r), share)
             } else {
@@ -43,9 +43,11 @@ pub(crate) fn paint(side: usize) -> Image {
 fn sclera(at: Vec2, vein: f32) -> Vec3 {
     let corner = ramp(1.25, 2.9, at.x.abs());
     let cloud = fractal(at.x * 2.2 + 9.0, at.y * 2.2, 3) - 0.5;
-    let white = vec3(0.775, 0.742, 0.722).lerp(vec3(0.725, 0.560, 0.520), corner * 0.75);
-    let white = white * (1.0 + 0.05 * cloud);
-    white.lerp(vec3(0.72, 0.36, 0.33), vein * (0.10 + 0.45 * corner))
+    let white = vec3(0.660, 0.628, 0.606).lerp(vec3(0.625, 0.455, 0.405), corner * 0.75);
+    // Where the white is thin, next to the iris, the dark behind it shows through bluish.
+    let thin = ramp(1.45, 1.02, at.length());
+    let white = white * (1.0 + 0.07 * cloud) * (Vec3::ONE - vec3(0.15, 0.12, 0.07) * thin);
+    white.lerp(vec3(0.60, 0.25, 0.22), vein * (0.18 + 0.42 * corner))
 }
 
 fn iris(at: Vec2, r: f32) -> Vec3 {
@@ -58,18 +60,25 @@ fn iris(at: Vec2, r: f32) -> Vec3 {
         let joined = value(wrapped - count, r * 2.0, seed);
         first + (joined - first) * ramp(count - 1.0, count, wrapped)
     };
-    let strand = 0.55 * fibre(90.0, 5) + 0.45 * fibre(41.0, 6);
-    let outer = vec3(0.265, 0.265, 0.205).lerp(vec3(0.455, 0.435, 0.325), strand);
-    let inner = vec3(0.36, 0.225, 0.105).lerp(vec3(0.56, 0.39, 0.20), strand);
-    let collar = 0.52 + 0.07 * (fibre(17.0, 8) - 0.5);
-    let mut c = outer.lerp(inner, ramp(collar + 0.14, collar - 0.10, r) * 0.85);
-    c *= 0.86 + 0.28 * ramp(0.38, 0.75, r);
-    // Limbal ring, then the pupil with its dark rim.
-    c *= 1.0 - 0.72 * ramp(0.76, 0.99, r);
-    c *= 1.0 - 0.35 * ramp(PUPIL + 0.07, PUPIL, r);
+    let strand = ramp(0.15, 0.85, 0.55 * fibre(90.0, 5) + 0.45 * fibre(41.0, 6));
+    let outer = vec3(0.175, 0.180, 0.150).lerp(vec3(0.365, 0.360, 0.295), strand);
+    let inner = vec3(0.200, 0.135, 0.070).lerp(vec3(0.365, 0.260, 0.145), strand);
+    // The collarette: a ragged ring where the pupil's own zone ends, its rim a little raised.
+    let collar = 0.54 + 0.10 * (fibre(17.0, 8) - 0.5);
+    let mut c = outer.lerp(inner, ramp(collar + 0.16, collar - 0.10, r) * 0.85);
+    c *= 1.0 + 0.12 * ramp(0.07, 0.0, (r - collar).abs());
+    // Crypts: gaps between the strands there, down to the dark layer.
+    let crypt = ramp(0.70, 0.95, fibre(23.0, 31)) * ramp(0.24, 0.06, (r - collar - 0.06).abs());
+    c *= 1.0 - 0.30 * crypt;
+    // Furrows of contraction run round it.
+    let furrow = ramp(0.035, 0.0, (r - 0.80).abs()) + 0.7 * ramp(0.03, 0.0, (r - 0.70).abs());
+    c *= 1.0 - 0.13 * furrow * value(angle * 9.0, 3.0, 12);
+    // The limbal ring is broad and soft on its inner side; so is the ruff round the pupil.
+    c *= 1.0 - 0.80 * ramp(0.70, 1.0, r);
+    c *= 1.0 - 0.55 * ramp(PUPIL + 0.13, PUPIL, r);
     c.lerp(
-        vec3(0.022, 0.018, 0.018),
-        ramp(PUPIL + 0.03, PUPIL - 0.02, r),
+        vec3(0.012, 0.010, 0.010),
+        ramp(PUPIL + 0.035, PUPIL - 0.035, r),
     )
 }
 
@@ -78,7 +87,7 @@ fn veins(side: usize) -> Field<1> {
     let mut field = Field::new(side, side, [0.0]);
     let scale = side as f32 / (2.0 * REACH);
     let mut dice = Dice::new(404);
-    for i in 0..34 {
+    for i in 0..44 {
         let sign = if i % 2 == 0 { 1.0 } else { -1.0 };
         let mut p = vec2(sign * (2.9 + 0.3 * dice.roll()), 1.5 * dice.spread());
         let mut heading = vec2(-sign, 0.25 * dice.spread());
@@ -93,7 +102,7 @@ fn veins(side: usize) -> Field<1> {
             let texel = |q: Vec2| (q + REACH) * scale;
             field.draw(&Stroke {
                 points: [texel(p), texel(next), texel(far)],
-                half_width: 0.016 * scale,
+                half_width: 0.019 * scale,
                 strength: [strength],
             });
             p = next;

@@ -1,6 +1,6 @@
-// The eyeball: a painted iris seen through a bulging, wet cornea; white that is not white; the shadow
-// of the lids on it, which follows their opening (HABER 4.1: the aperture controls the brightness); a
-// catch-light that never goes out.
+// The eyeball: a painted iris behind a bulging, wet cornea that bends the ray to it; a pupil that widens and
+// narrows; white that is not white; the shadow of lids and lashes on it, which follows their opening
+// (HABER 4.1: the aperture controls the brightness); a line of tears; a catch-light that never goes out.
 
 #include "part"
 #include "light"
@@ -9,8 +9,17 @@
 @group(2) @binding(1) var eye_map: texture_2d<f32>;
 @group(2) @binding(2) var unused_map: texture_2d<f32>;
 
-// The eye map covers this many iris radii from its middle. Keep in step with maps/eye.rs.
+// The eye map covers this many iris radii from its middle, and its pupil is that wide. Keep in step with maps/eye.rs.
 const MAP_REACH: f32 = 3.0;
+const MAP_PUPIL: f32 = 0.36;
+// Iris radius over the cornea's radius of curvature: 5.8 and 7.8 mm. What a unit of uv tilts the cornea's normal.
+const DOME: f32 = 0.74;
+// The iris lies that far behind the cornea's apex, in iris radii: 3 mm.
+const CHAMBER: f32 = 0.52;
+// Air to the fluid behind the cornea.
+const ETA: f32 = 0.748;
+// How far from the pupil's middle the catch-light may slide, in iris radii.
+const CATCH_REACH: f32 = 0.72;
 
 struct EyeFragment {
     @builtin(position) clip: vec4<f32>,
@@ -22,8 +31,32 @@ struct EyeFragment {
     // Light that multiplies the eye's colour: the key's, and the rest.
     @location(4) key: vec3<f32>,
     @location(5) soft: vec3<f32>,
-    // Above 0 in the subject's left eye.
-    @location(6) side: f32,
+    // Above 0 in the subject's left eye; the catch-light's place in uv and how much of it the lids leave: alike all over an eye.
+    @location(6) whole: vec4<f32>,
+}
+
+// Where the cornea mirrors the key lamp, in iris radii from the pupil. The lamp is taken nearer the camera, as portrait
+// photographers place a second one, and slides with lids and gaze so that it always shows in an open eye.
+fn catch_light(side: u32, turn: mat4x4<f32>) -> vec3<f32> {
+    let ball = frame.eyeballs[side];
+    let centre = (frame.bodies[1] * vec4(ball.xyz, 1.0)).xyz;
+    let v = normalize(frame.eye.xyz - centre);
+    let l = frame.key_dir.xyz;
+    let h = normalize(normalize(l * 0.62 + v) + v);
+    let along = max(dot(h, turn[2].xyz), 0.25);
+    var at = vec2(dot(h, turn[0].xyz), dot(h, turn[1].xyz)) / (along * DOME);
+    at *= min(1.0, CATCH_REACH * inverseSqrt(max(dot(at, at), 1e-6)));
+    // A unit of uv in radii of the ball, and where that is in the head.
+    let unit = 5.8 / ball.w;
+    let over = head_direction(turn[2].xyz + (turn[0].xyz * at.x + turn[1].xyz * at.y) * unit);
+    let poly = vec3(1.0, over.x, over.x * over.x);
+    let upper = dot(frame.lids[side * 2u].xyz, poly);
+    let lower = dot(frame.lids[side * 2u + 1u].xyz, poly);
+    let gap = upper - lower;
+    let room = min(0.5 * gap, 0.12);
+    let y = clamp(over.y, lower + room, upper - room);
+    at.y += (y - over.y) / unit;
+    return vec3(at, smoothstep(0.03, 0.14, gap));
 }
 
 @vertex
@@ -42,65 +75,89 @@ fn eye_vertex(in: PartVertex) -> EyeFragment {
     out.world = at.world;
     out.normal = n;
     out.uv = in.uv;
-    out.side = head.x;
+    out.whole = vec4(head.x, catch_light(side, frame.bodies[3u + side]));
     out.lids = vec4(over, dot(frame.lids[side * 2u].xyz, poly), dot(frame.lids[side * 2u + 1u].xyz, poly));
     let visible = mix(key_visible(shadow_place(at.world, n)), 1.0, 0.25);
     let wrap = vec3(0.35, 0.25, 0.22);
-    out.key = frame.key_colour.rgb * max((vec3(dot(n, frame.key_dir.xyz)) + wrap) / (1.0 + wrap), vec3(0.0)) * visible;
-    out.soft = (frame.fill_colour.rgb * max(dot(n, frame.fill_dir.xyz) * 0.7 + 0.3, 0.0) + ambient_from(n)) * mix(0.55, 1.0, open);
+    let dim = mix(0.5, 1.0, open);
+    out.key = frame.key_colour.rgb * max((vec3(dot(n, frame.key_dir.xyz)) + wrap) / (1.0 + wrap), vec3(0.0)) * (visible * dim);
+    out.soft = (frame.fill_colour.rgb * max(dot(n, frame.fill_dir.xyz) * 0.7 + 0.3, 0.0) + ambient_from(n)) * dim;
     return out;
 }
 
-// The lamp's picture in the wet surface: a soft-edged disc round its direction.
-fn lamp_mirrored(mirrored: vec3<f32>, lamp: vec4<f32>) -> f32 {
-    let edge = cos(lamp.w);
-    return smoothstep(edge - 0.02, edge + 0.01, dot(mirrored, lamp.xyz));
+// A soft box as the cornea shows it: a square with round corners, a little brighter above.
+fn soft_box(p: vec2<f32>, half: vec2<f32>, blur: f32) -> f32 {
+    let round = 0.75 * half.x;
+    let q = abs(p) - half + round;
+    let d = length(max(q, vec2(0.0))) + min(max(q.x, q.y), 0.0) - round;
+    return smoothstep(blur, -blur, d) * (0.82 + 0.18 * clamp(p.y / half.y, -1.0, 1.0));
 }
 
 @fragment
 fn eye(in: EyeFragment) -> @location(0) vec4<f32> {
     let v = normalize(frame.eye.xyz - in.world);
-    let r = length(in.uv);
-    let bulge = 1.0 - smoothstep(0.85, 1.2, r);
+    let r2 = dot(in.uv, in.uv);
+    let bulge = 1.0 - smoothstep(0.72, 1.44, r2);
     // The eye's own axes: across, up and along its gaze.
-    let turn = frame.bodies[select(4u, 3u, in.side > 0.0)];
-    let axis_x = turn[0].xyz;
-    let axis_y = turn[1].xyz;
+    let left = in.whole.x > 0.0;
+    let turn = frame.bodies[select(4u, 3u, left)];
     // The cornea as a sphere of 7.8 mm under an iris of 5.8 mm: smoother than the mesh could be.
-    let dome = normalize(turn[2].xyz + (axis_x * in.uv.x + axis_y * in.uv.y) * 0.74);
+    let dome = normalize(turn[2].xyz + (turn[0].xyz * in.uv.x + turn[1].xyz * in.uv.y) * DOME);
     let n = normalize(mix(in.normal, dome, bulge));
 
-    // Refraction: the iris lies behind the cornea, so it shifts against the eye's own motion.
-    let sight = vec2(dot(v, axis_x), dot(v, axis_y));
-    let iris_uv = in.uv - sight * (0.22 * bulge * bulge);
-    let texel = textureSample(eye_map, map_sampler, iris_uv * (0.5 / MAP_REACH) + 0.5);
-    let albedo = texel.rgb * texel.rgb;
+    // The ray bends at the cornea and goes on to the plane of the iris: seen from aside the iris moves behind its
+    // window, seen from the front it looks an eighth wider.
+    let bent = refract(-v, n, ETA);
+    let ray = vec3(dot(bent, turn[0].xyz), dot(bent, turn[1].xyz), dot(bent, turn[2].xyz));
+    let depth = CHAMBER * max(1.0 - r2, 0.0);
+    let iris = in.uv + ray.xy * (depth / max(-ray.z, 0.3));
+    // The pupil: the iris is stretched between its rim and the painted pupil.
+    let r = max(length(iris), 1e-4);
+    let p = frame.pupil.x;
+    let stretched = select(MAP_PUPIL + (r - p) * (1.0 - MAP_PUPIL) / (1.0 - p), r * MAP_PUPIL / p, r < p);
+    let map_uv = iris * (select(stretched / r, 1.0, r > 1.0));
+    let texel = textureSample(eye_map, map_sampler, map_uv * (0.5 / MAP_REACH) + 0.5);
+    var albedo = texel.rgb * texel.rgb;
 
-    // Lids: shadow of the upper one, contact of both, dim corners.
+    // The corner by the nose: the fold of the conjunctiva and the caruncle are flesh.
+    let nasal = select(in.lids.x, -in.lids.x, left);
+    albedo = mix(albedo, vec3(0.50, 0.20, 0.165), 0.75 * smoothstep(0.42, 0.86, nasal) * (1.0 - texel.a));
+
+    // Lids: the upper one's shadow, the lashes' beyond it in streaks that slant from the lamp, both lids' touch, dim corners.
+    let l = frame.key_dir.xyz;
+    let key = vec3(dot(l, turn[0].xyz), dot(l, turn[1].xyz), dot(l, turn[2].xyz));
     let upper = in.lids.z - in.lids.y;
     let lower = in.lids.y - in.lids.w;
-    let shade = mix(0.22, 1.0, smoothstep(-0.04, 0.30, upper));
-    let contact = mix(0.35, 1.0, smoothstep(-0.03, 0.14, min(upper, lower)));
-    let corner = 1.0 - 0.6 * smoothstep(0.35, 0.85, abs(in.lids.x));
-    let sky = shade * contact * corner;
-    // The iris is a dish lit from across: it brightens away from the lamp.
-    let l = frame.key_dir.xyz;
-    let caustic = 1.0 - texel.a * 0.5 * dot(vec2(dot(l, axis_x), dot(l, axis_y)), in.uv);
-    var light = albedo * (in.key * (shade * corner * caustic) + in.soft * (sky * contact));
+    let slant = in.lids.x + upper * key.x / max(key.z, 0.3);
+    let streaks = 0.5 + 0.5 * sin(slant * 47.0 + 1.7 * sin(slant * 13.0));
+    let lash = (1.0 - smoothstep(0.08, 0.46, upper)) * (0.26 + 0.20 * streaks);
+    let shade = mix(0.10, 1.0, smoothstep(-0.02, 0.20, upper)) * (1.0 - lash);
+    let contact = mix(0.30, 1.0, smoothstep(-0.03, 0.17, min(upper, lower * 1.4)));
+    let corner = 1.0 - 0.6 * smoothstep(0.30, 0.90, abs(in.lids.x));
+    let sky = mix(shade, 1.0, 0.25) * contact * corner;
+    // The iris is a dish behind a lens: it brightens across from the lamp, and its rim shades it towards the lamp.
+    let across = dot(key.xy, iris);
+    let dish = 1.0 - texel.a * clamp(0.85 * across, -0.75, 0.75);
+    let lens = mix(1.0, 0.92 + 0.22 * dish, texel.a);
+    var light = albedo * (in.key * (shade * corner * dish) + in.soft * (sky * contact * lens));
 
-    // What the wet surface mirrors: lamps, and the room at its edge.
+    // What the wet surface mirrors: the room at its edge, the lamps.
     let mirrored = reflect(-v, n);
-    let seen = smoothstep(-0.02, 0.04, upper) * smoothstep(0.0, 0.05, lower);
-    // The catch-light: the key lamp as portrait photographers place a second one, nearer the camera, so
-    // that the lid does not hide it.
-    let catch_dir = normalize(l * 0.62 + v);
-    let lamps = lamp_mirrored(mirrored, vec4(catch_dir, 0.18)) * 0.8 * frame.key_colour.rgb
-        + lamp_mirrored(mirrored, frame.fill_dir) * 0.08 * frame.fill_colour.rgb;
-    let film = 0.025 + 0.55 * grazing(max(dot(n, v), 0.0));
-    light += lamps * (seen * mix(0.15, 1.0, bulge));
+    let seen = smoothstep(-0.02, 0.05, upper) * smoothstep(0.0, 0.05, lower);
+    let film = 0.025 + 0.50 * grazing(max(dot(n, v), 0.0));
     light += ambient_from(mirrored) * (film * sky);
-    // A tear line along the lower lid.
-    let tear = smoothstep(0.09, 0.05, lower) * smoothstep(0.0, 0.03, lower) * seen;
-    light += frame.key_colour.rgb * (tear * 0.10 * corner);
+    let glint = in.uv - in.whole.yz;
+    let box = soft_box(glint, vec2(0.120, 0.140), 0.045) * 0.85;
+    // Round the box a faint glow of what it lights: the edge is not cut with scissors.
+    let glow = 0.018 * exp(-12.0 * dot(glint, glint));
+    // The fill is a broad dim panel on the other side, below.
+    let other = in.uv - vec2(-in.whole.y * 1.25, in.whole.z - 0.75);
+    let panel = soft_box(other, vec2(0.22, 0.16), 0.12) * 0.022;
+    light += frame.key_colour.rgb * ((box + glow * bulge) * in.whole.w * mix(seen, 1.0, 0.3));
+    light += frame.fill_colour.rgb * (panel * seen * bulge);
+    // Tears stand along the lower lid: a line that mirrors the lamp brightest below the catch-light.
+    let tear = smoothstep(0.0, 0.025, lower) * smoothstep(0.085, 0.045, lower) * seen;
+    let under = in.uv.x - in.whole.y;
+    light += frame.key_colour.rgb * (tear * corner * (0.07 + 0.34 * exp(-2.2 * under * under)));
     return developed(light);
 }

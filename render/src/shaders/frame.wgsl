@@ -43,6 +43,8 @@ struct Frame {
     wrinkled: array<vec4<f32>, 4>,
     // Direction from the head towards the camera, unit length.
     toward_camera: vec4<f32>,
+    // x: radius of the pupils in iris radii.
+    pupil: vec4<f32>,
 }
 
 @group(0) @binding(0) var<uniform> frame: Frame;

@@ -1,6 +1,7 @@
 // How much light the opening between the lips lets in. HABER 4.1 scales the brightness of teeth and
-// tongue by the mouth's opening; here that is the share of a point's sky which the opening fills, so
-// that a front tooth stays bright where the throat is dark.
+// tongue by the mouth's opening; here that opening is seen from the place: the share of its sky is Lambert's formula
+// for a polygon (Lambert, Photometria, 1760), and each lamp is seen through it or not. So a front tooth stays bright
+// where the throat is dark, and all is dark behind a slit.
 
 #include "part"
 #include "light"
@@ -9,10 +10,9 @@ struct MouthFragment {
     @builtin(position) clip: vec4<f32>,
     @location(0) world: vec3<f32>,
     @location(1) normal: vec3<f32>,
-    // Position in the head's frame.
-    @location(2) head: vec3<f32>,
-    // Shares of ambient, key and fill light that reach the place; occlusion at rest.
-    @location(3) inside: vec4<f32>,
+    // Position in the head's frame; occlusion at rest.
+    @location(2) head: vec4<f32>,
+    @location(3) uv: vec2<f32>,
 }
 
 @vertex
@@ -22,18 +22,21 @@ fn mouth_vertex(in: PartVertex) -> MouthFragment {
     out.world = at.world;
     out.normal = at.normal;
     out.clip = frame.clip_from_world * vec4(at.world, 1.0);
-    out.head = in_head(at.world);
-    let light = mouth_light(out.head, head_direction(normalize(at.normal)));
-    out.inside = vec4(light.sky, light.key, light.fill, in.shares.x);
+    out.head = vec4(in_head(at.world), in.shares.x);
+    out.uv = in.uv;
     return out;
 }
 
 struct MouthLight {
-    // Share of ambient light.
+    // Share of ambient light that falls on a surface facing so.
     sky: f32,
+    // Share of the place's whole surroundings that is outside.
+    seen: f32,
     // Share of the key light and of the fill light.
     key: f32,
     fill: f32,
+    // What the wet walls throw at one another, as a share of the light outside.
+    thrown: f32,
 }
 
 // Share of light from direction l (head's frame) that passes the opening, an ellipse with a soft edge.
@@ -50,41 +53,69 @@ fn through_lips(p: vec3<f32>, l: vec3<f32>) -> f32 {
     return select(window, 1.0, ahead < -1.0);
 }
 
+// One edge of the polygon: the angle it fills, along the normal of the plane through it and the place.
+fn edge_seen(a: vec3<f32>, b: vec3<f32>) -> vec3<f32> {
+    let c = cross(a, b);
+    let s = length(c);
+    return c * (atan2(s, dot(a, b)) / max(s, 1e-5));
+}
+
+// The opening as light falls from it on the place: over 2 pi it is the share of the sky, as a vector to be dotted with
+// the normal. A rectangle as large as the ellipse, a little behind the lips' line where their inner edges are.
+fn opening_seen(p: vec3<f32>) -> vec3<f32> {
+    let half = vec2(frame.mouth.w * 0.84, frame.mouth_height.x * 0.93);
+    let to = frame.mouth.xyz - p;
+    // Never in its plane or before it.
+    let z = max(to.z, 0.7);
+    let a = vec3(to.x - half.x, to.y - half.y, z);
+    let b = vec3(to.x + half.x, to.y - half.y, z);
+    let c = vec3(to.x + half.x, to.y + half.y, z);
+    let d = vec3(to.x - half.x, to.y + half.y, z);
+    return (edge_seen(a, b) + edge_seen(b, c) + edge_seen(c, d) + edge_seen(d, a)) / (2.0 * PI);
+}
+
 fn mouth_light(p: vec3<f32>, n: vec3<f32>) -> MouthLight {
-    let half = vec2(frame.mouth.w, frame.mouth_height.x);
-    // The part of the opening that is nearest.
-    var to = frame.mouth.xyz - p;
-    to.x -= clamp(to.x, -0.7 * half.x, 0.7 * half.x);
-    to.y -= clamp(to.y, -0.5 * half.y, 0.5 * half.y);
-    let d2 = dot(to, to) + 1.0;
-    let inverse = inverseSqrt(d2);
-    let area = PI * half.x * half.y;
-    // Wet walls pass light on, so that what faces away or stands aside is dim, not black.
-    let facing = clamp(dot(n, to) * inverse * 0.4 + 0.6, 0.0, 1.0);
-    let leaving = clamp(to.z * inverse * 0.8 + 0.2, 0.0, 1.0);
+    let opening = opening_seen(p);
+    let outside = smoothstep(0.5, 3.0, p.z - frame.mouth.z) * 0.8;
     var out: MouthLight;
-    out.sky = max(area * leaving * facing / (1.3 * d2 + area), smoothstep(0.5, 3.0, -to.z) * 0.8);
+    out.seen = max(length(opening), outside);
+    // Flesh and enamel pass light on below their surface: what faces aside is dim, not black.
+    out.sky = max(max(dot(n, opening), 0.0) * 0.7 + out.seen * 0.5, outside);
     out.key = through_lips(p, head_direction(frame.key_dir.xyz));
     out.fill = through_lips(p, head_direction(frame.fill_dir.xyz));
+    // A mouth is a cave: what comes in at its opening is shared by all its walls, about 2500 mm2 of them.
+    let area = PI * frame.mouth.w * frame.mouth_height.x;
+    out.thrown = 0.6 * area / (area + 2500.0);
     return out;
 }
 
-// A wet surface inside the mouth. `soft` lets light creep round the edge, as enamel and flesh do.
-fn wet_surface(in: MouthFragment, n: vec3<f32>, albedo: vec3<f32>, roughness: f32, f0: f32, soft: f32) -> vec3<f32> {
+fn lit_mouth(in: MouthFragment, n: vec3<f32>) -> MouthLight {
+    return mouth_light(in.head.xyz, head_direction(n));
+}
+
+// A wet surface inside the mouth. `soft` lets light creep round the edge, as enamel and flesh do; `body` is the normal
+// that light below the surface knows, `n` that of the film of spit on it.
+fn wet_surface(in: MouthFragment, inside: MouthLight, body: vec3<f32>, n: vec3<f32>, albedo: vec3<f32>, roughness: f32, f0: f32, soft: f32) -> vec3<f32> {
     let v = normalize(frame.eye.xyz - in.world);
-    let inside = MouthLight(in.inside.x, in.inside.y, in.inside.z);
-    let occlusion = in.inside.w;
+    let occlusion = in.head.w;
     let wrap = 1.0 / (1.0 + soft);
     let key = frame.key_colour.rgb * inside.key;
     let fill = frame.fill_colour.rgb * inside.fill;
-    var light = albedo * key * max((dot(n, frame.key_dir.xyz) + soft) * wrap, 0.0) * mix(occlusion, 1.0, 0.4);
-    light += albedo * fill * max((dot(n, frame.fill_dir.xyz) + soft) * wrap, 0.0) * mix(occlusion, 1.0, 0.4);
+    let open = mix(occlusion, 1.0, 0.45);
+    var light = albedo * key * (max((dot(body, frame.key_dir.xyz) + soft) * wrap, 0.0) * open);
+    light += albedo * fill * (max((dot(body, frame.fill_dir.xyz) + soft) * wrap, 0.0) * open);
     // Through the opening come the room's light and what the lamps throw about.
-    let room = ambient_from(n) + 0.40 * frame.key_colour.rgb + 0.25 * frame.fill_colour.rgb;
-    light += albedo * room * (inside.sky * mix(occlusion, 1.0, 0.5));
+    let front = frame.bodies[1][2].xyz;
+    let room = ambient_from(front) + 0.30 * frame.key_colour.rgb + 0.25 * frame.fill_colour.rgb;
+    light += albedo * room * (inside.sky * open);
+    // Thrown about among the walls it turns red.
+    light += albedo * vec3(0.70, 0.36, 0.29) * (room + frame.key_colour.rgb) * (inside.thrown * open);
     light += f0 * key * gloss(n, v, frame.key_dir.xyz, roughness);
     light += f0 * fill * gloss(n, v, frame.fill_dir.xyz, roughness);
-    // The bright room mirrored in the wet film, stronger where the eye grazes it.
+    // The opening itself, mirrored: the lit room as a broad lamp before the mouth, a little above the eye's line.
+    let before = normalize(v + front + vec3(0.0, 0.35, 0.0));
+    light += f0 * room * (inside.seen * gloss(n, v, before, roughness + 0.06));
+    // And the wet film's rim where the eye grazes it.
     let film = f0 + (0.5 - f0) * grazing(dot(n, v));
     light += (ambient_from(reflect(-v, n)) + 0.2 * frame.key_colour.rgb) * (film * inside.sky);
     return light;
