@@ -13,19 +13,24 @@ use crate::maps::noise::Dice;
 use crate::maps::ramp;
 
 /// Cards wider than this are split, mm.
-const WIDE_MM: f32 = 6.0;
+const WIDE_MM: f32 = 7.0;
 /// Into as many at most.
-const SPLIT_MAX: usize = 3;
+const SPLIT_MAX: usize = 2;
 /// How deep within the hairline the cap is whole, and how deep it is gone, mm.
 const CAP_MM: [f32; 2] = [11.0, 4.0];
 /// Short hairs a square mm, and how far off the hairline they grow, outside and inside, mm.
-const FINE_DENSITY: f32 = 0.30;
+const FINE_DENSITY: f32 = 0.17;
 const FINE_MM: [f32; 2] = [-4.5, 6.0];
-/// Least light at the roots of cards and on the cap, as a share of what the head says is missing there.
-const LEAST_LIGHT: f32 = 0.45;
-/// Shade that hair throws on the skin before it: how much, and how far off and within the hairline, mm.
+/// Least light at the roots of cards, as a share of what the head says is missing there.
+const LEAST_LIGHT: f32 = 0.55;
+/// Light on the cap, and how much of the head's own unevenness is left: it is seen between the cards.
+const CAP_LIGHT: f32 = 0.46;
+const CAP_UNEVEN: f32 = 0.25;
+/// Shade that hair throws on the skin before it: how much, and where it begins and is deepest, mm within
+/// the hairline. Farther in hair is painted on the skin, and dark.
 const SHADE: f32 = 0.42;
-const SHADE_MM: [f32; 2] = [-9.0, 5.0];
+const SHADE_MM: [f32; 2] = [-9.0, 2.0];
+const PAINTED_MM: [f32; 2] = [3.0, 10.0];
 /// `uv.x` of a single hair: 2 on its left side, 6 on its right one, plus the place in the map that gives its tone. Keep in
 /// step with shaders/hair.wgsl, which gives it its width.
 const SINGLE: [f32; 2] = [2.0, 6.0];
@@ -152,7 +157,7 @@ fn split(out: &mut Mesh, mesh: &Mesh, card: &Card, dice: &mut Dice) {
         let stray = if parts > 1 { 0.32 * dice.spread() } else { 0.0 };
         let raised = if parts > 1 { 0.9 * dice.spread() } else { 0.0 };
         let longer = if parts > 1 {
-            0.72 + 0.42 * dice.roll()
+            0.68 + 0.32 * dice.roll()
         } else {
             1.0
         };
@@ -277,27 +282,25 @@ fn fine_hair(out: &mut Mesh, root: Vec3, normal: Vec3, along: Vec3, length: f32,
     join(out, first);
 }
 
-/// Two hairs in place of a card that shows a few: they have the width of hairs at any distance.
+/// A hair in place of a card that shows a few: it has the width of hairs at any distance.
 fn single(out: &mut Mesh, mesh: &Mesh, card: &Card, dice: &mut Dice) {
-    for _ in 0..2 {
-        let first = out.positions.len();
-        let [from, to] = [dice.roll(), dice.roll()];
-        let tone = 0.5 * dice.roll();
-        for i in 0..card.pairs {
-            let at = card.first + 2 * i;
-            let v = mesh.uvs[at].y;
-            let place = mesh.positions[at].lerp(mesh.positions[at + 1], from + (to - from) * v);
-            push_pair(
-                out,
-                place,
-                place,
-                [(mesh.normals[at] + mesh.normals[at + 1]).normalize_or(Vec3::Y); 2],
-                SINGLE.map(|x| vec2(x + tone, v)),
-                mesh.occlusion[at],
-            );
-        }
-        join(out, first);
+    let first = out.positions.len();
+    let [from, to] = [dice.roll(), dice.roll()];
+    let tone = 0.5 * dice.roll();
+    for i in 0..card.pairs {
+        let at = card.first + 2 * i;
+        let v = mesh.uvs[at].y;
+        let place = mesh.positions[at].lerp(mesh.positions[at + 1], from + (to - from) * v);
+        push_pair(
+            out,
+            place,
+            place,
+            [(mesh.normals[at] + mesh.normals[at + 1]).normalize_or(Vec3::Y); 2],
+            SINGLE.map(|x| vec2(x + tone, v)),
+            mesh.occlusion[at],
+        );
     }
+    join(out, first);
 }
 
 /// Light scatters on between strands: what lies deep is not black.
@@ -313,7 +316,10 @@ pub(crate) fn shaded_skin(head: &Head) -> Vec<f32> {
     let Some(hairline) = hairline else {
         return mesh.occlusion.clone();
     };
-    let shade = |uv: &Vec2| SHADE * ramp(SHADE_MM[0], SHADE_MM[1], hairline.depth_mm(*uv));
+    let shade = |uv: &Vec2| {
+        let depth = hairline.depth_mm(*uv);
+        SHADE * ramp(SHADE_MM[0], SHADE_MM[1], depth) * ramp(PAINTED_MM[1], PAINTED_MM[0], depth)
+    };
     mesh.occlusion
         .iter()
         .zip(&mesh.uvs)
@@ -348,9 +354,85 @@ fn keep_cap(out: &mut Mesh, mesh: &Mesh, head: &Head, hairline: Option<&Hairline
             (0.05 + to_and_fro * (DENSE as f32 - 0.1)) / COLUMNS as f32,
             -1.0 - faded,
         ));
-        out.occlusion.push(lightened(mesh.occlusion[i]));
+        out.occlusion
+            .push(CAP_LIGHT + CAP_UNEVEN * mesh.occlusion[i]);
     }
     let kept = mesh.triangles.iter().map(|t| t.map(|i| place[i as usize]));
     out.triangles
         .extend(kept.filter(|t| t.iter().all(|&i| i != u32::MAX)));
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use glam::vec3;
+
+    fn hair(head: &Head) -> &Part {
+        let mut parts = head.parts.iter();
+        parts.find(|p| p.material == Material::Hair).unwrap()
+    }
+
+    #[test]
+    fn wide_cards_are_split_and_fine_hair_grows_at_the_hairline() {
+        let head = Head::reference().unwrap();
+        let part = hair(&head);
+        let mesh = dressed(&head, part);
+        let count = mesh.positions.len();
+        assert!(mesh.triangles.len() > part.mesh.triangles.len());
+        // What a picture may cost: see the bench.
+        assert!(count < 2 * part.mesh.positions.len(), "{count} vertices");
+        assert_eq!(
+            [count; 3],
+            [mesh.normals.len(), mesh.uvs.len(), mesh.occlusion.len()]
+        );
+        assert!(
+            mesh.triangles
+                .iter()
+                .flatten()
+                .all(|&i| (i as usize) < count)
+        );
+        assert!(
+            mesh.positions
+                .iter()
+                .chain(&mesh.normals)
+                .all(|p| p.is_finite())
+        );
+        let widest = |m: &Mesh| {
+            let cards = cards(m);
+            let wide = cards
+                .iter()
+                .map(|c| m.positions[c.first + 2].distance(m.positions[c.first + 3]));
+            wide.fold(0.0, f32::max)
+        };
+        assert!(widest(&mesh) < 0.75 * widest(&part.mesh));
+        // Single hairs before the hairline: none in the head's own mesh.
+        let fine = mesh.uvs.iter().filter(|uv| uv.x > 1.5).count();
+        assert!(fine > 1000, "{fine} vertices of single hairs");
+    }
+
+    #[test]
+    fn hair_that_is_no_cards_is_left_alone() {
+        let head = Head::reference().unwrap();
+        let mut part = hair(&head).clone();
+        part.mesh = Mesh {
+            positions: vec![Vec3::ZERO, vec3(9.0, 0.0, 0.0), vec3(0.0, 9.0, 0.0)],
+            normals: vec![Vec3::Z; 3],
+            uvs: vec![vec2(0.2, 0.3), vec2(0.4, 0.0), vec2(0.1, 0.7)],
+            occlusion: vec![1.0; 3],
+            triangles: vec![[0, 1, 2]],
+        };
+        assert_eq!(dressed(&head, &part).triangles, part.mesh.triangles);
+    }
+
+    #[test]
+    fn hair_shades_the_skin_at_the_hairline_and_nowhere_else() {
+        let mut head = Head::reference().unwrap();
+        let shaded = shaded_skin(&head);
+        let own = &head.skin.mesh.occlusion;
+        let darker = |i: &usize| shaded[*i] < own[*i] - 1e-4;
+        let count = (0..own.len()).filter(darker).count();
+        assert!(count > 50 && count < own.len() / 4, "{count} vertices");
+        head.parts.retain(|p| p.material != Material::Hair);
+        assert_eq!(shaded_skin(&head), head.skin.mesh.occlusion);
+    }
 }

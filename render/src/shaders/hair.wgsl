@@ -105,11 +105,14 @@ fn hair(in: HairFragment) -> @location(0) vec4<f32> {
     let shift = (map.b - 0.5) * JITTER;
     let mirrored = in.places.z + (shift - TILT) * in.places.w;
     let coloured = in.places.z + (shift + 1.5 * TILT) * in.places.w;
-    let base = mix(DARK, PALE, map.r * map.r);
-    let near = map.g * map.g;
-    let light = base * (in.light.rgb * map.g)
+    // The cap lies deep and shows its strands faintly.
+    let tone = select(map.r, 0.6 * map.r + 0.18, cap);
+    let reached = select(map.g, 0.5 * map.g + 0.38, cap);
+    let base = mix(DARK, PALE, tone * tone);
+    let near = reached * reached;
+    let light = base * (in.light.rgb * reached)
         + (SHINE * (0.055 * exp2(-mirrored * mirrored * SHARP))
             + base * (1.35 * exp2(-coloured * coloured * BROAD))) * (in.light.w * near * (0.4 + map.b))
-        + in.behind.rgb * map.g;
+        + in.behind.rgb * reached;
     return vec4(developed(light).rgb, covered / samples);
 }

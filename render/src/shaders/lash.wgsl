@@ -16,6 +16,8 @@ const FINE_LOWER: f32 = 1.25;
 // How far a tip curls up, and down on the lower lid, beyond its blade.
 const CURL_UP_MM: f32 = 1.1;
 const CURL_DOWN_MM: f32 = 1.3;
+// How far it strays to the side, at one radius of the eyeball from its middle.
+const FAN_MM: f32 = 1.5;
 
 struct LashFragment {
     @builtin(position) clip: vec4<f32>,
@@ -43,8 +45,11 @@ fn lash_vertex(in: PartVertex) -> LashFragment {
     // Seen from before, lashes point at the eye that sees them: their curl shows their length.
     let tip = fract(in.uv.y * 0.999);
     let lower = in.uv.y > 1.5;
-    let curl = select(tip * tip * CURL_UP_MM, -tip * CURL_DOWN_MM, lower);
-    let off = in.rest + vec3(0.0, curl, 0.0) - across * half - centre;
+    // No two alike, and away from each other towards the corners.
+    let chance = fract(sin(in.uv.x * 917.0) * 437.58);
+    let curl = (0.55 + 0.9 * chance) * select(tip * tip * CURL_UP_MM, -tip * CURL_DOWN_MM, lower);
+    let fan = tip * (FAN_MM * in.uv.x + 0.9 * (chance - 0.5));
+    let off = in.rest + vec3(fan, curl, 0.0) - across * half - centre;
     var turned = in;
     turned.rest = centre + vec3(off.x, off.y * c + off.z * s, off.z * c - off.y * s);
     let at = placed(turned, 0.0);
@@ -58,11 +63,16 @@ fn lash_vertex(in: PartVertex) -> LashFragment {
 
     // Brown where light gets through the thin tips.
     let albedo = mix(vec3(0.010, 0.007, 0.006), vec3(0.040, 0.026, 0.019), tip);
-    let h = normalize(frame.key_dir.xyz + normalize(frame.eye.xyz - at.world));
-    let along = dot(cross(outward, n), h);
+    let v = normalize(frame.eye.xyz - at.world);
+    let h = normalize(frame.key_dir.xyz + v);
+    // Along the lash, the other way on its other side; so is what lies across it as it is seen.
+    let tangent = cross(outward, n);
+    let along = dot(tangent, h);
+    let aside = cross(tangent, v);
+    let seen = aside * inverseSqrt(max(dot(aside, aside), 1e-6));
     let shine = 0.016 * exp2(-along * along * 20.0) * dot(frame.key_colour.rgb, vec3(0.3333));
     var out: LashFragment;
-    out.clip = frame.clip_from_world * vec4(at.world + outward * drawn, 1.0);
+    out.clip = frame.clip_from_world * vec4(at.world + seen * drawn, 1.0);
     out.light = vec4(albedo * (ambient_from(n) + 0.5 * frame.key_colour.rgb * abs(dot(n, frame.key_dir.xyz))) + shine,
         fine / drawn);
     return out;
