@@ -39,6 +39,8 @@ mod pipelines;
 mod recipes;
 mod renderer;
 mod shader;
+#[cfg(test)]
+mod steady_tests;
 mod studio;
 mod surface;
 mod targets;

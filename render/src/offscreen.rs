@@ -121,10 +121,10 @@ impl Offscreen {
         self.renderer.extent()
     }
 
-    /// As `Pipelines::edit`.
+    /// What draws.
     #[cfg(test)]
-    pub(crate) fn edit_shader(&mut self, edit: Option<[&str; 3]>) {
-        self.renderer.pipelines.edit(edit);
+    pub(crate) fn renderer(&mut self) -> &mut Renderer {
+        &mut self.renderer
     }
 
     /// Pictures submitted and not taken.

@@ -13,7 +13,7 @@ use crate::gpu::Gpu;
 use crate::gpu_data::{Frame, SkinMoving};
 use crate::layouts::Layouts;
 use crate::maps::Maps;
-use crate::openings::Openings;
+use crate::openings::{Open, Openings};
 use crate::passes::{DRAW_ORDER, SHUT_MM};
 use crate::picture::Picture;
 use crate::pipelines::Pipelines;
@@ -221,6 +221,19 @@ impl Renderer {
         }
     }
 
+    /// Works out everything that a picture of this moment needs. Allocates nothing.
+    pub(crate) fn prepare(
+        &mut self,
+        key_frame: &KeyFrame,
+        view: &View,
+        size: (u32, u32),
+    ) -> (Frame, Open) {
+        self.skin.set(&key_frame.skin);
+        let open = self.openings.measure(self.skin.points());
+        let frame = frame::data(&self.pose, &self.extent, &open, key_frame, view, size);
+        (frame, open)
+    }
+
     /// Uploads what changed and writes the commands of one picture.
     pub(crate) fn encode(
         &mut self,
@@ -256,14 +269,9 @@ impl Renderer {
                 group: bindings::picture(gpu, &self.layouts, picture),
             });
         }
-        self.skin.set(&key_frame.skin);
-        gpu.queue().write_buffer(
-            &self.skin_moving,
-            0,
-            bytemuck::cast_slice::<SkinMoving, u8>(&self.skin.moving),
-        );
-        let open = self.openings.measure(self.skin.points());
-        let frame = frame::data(&self.pose, &self.extent, &open, key_frame, view, size);
+        let (frame, open) = self.prepare(key_frame, view, size);
+        let moving = bytemuck::cast_slice::<SkinMoving, u8>(&self.skin.moving);
+        gpu.queue().write_buffer(&self.skin_moving, 0, moving);
         gpu.queue()
             .write_buffer(&self.frame, 0, bytemuck::bytes_of(&frame));
         if view.shown != Shown::Yardstick {

@@ -32,7 +32,7 @@ fn a_wrong_shader_is_seen() {
     let head = Head::reference().unwrap();
     let mut offscreen = Offscreen::new(&gpu, &head, SIZE, Tier::Medium).unwrap();
     let mut draw = |edit: Option<[&str; 3]>| {
-        offscreen.edit_shader(edit);
+        offscreen.renderer().pipelines.edit(edit);
         let pixels = offscreen
             .render(&head.rest_frame(), &View::default())
             .unwrap();
