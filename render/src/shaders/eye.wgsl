@@ -132,7 +132,7 @@ fn eye(in: EyeFragment) -> @location(0) vec4<f32> {
     let streaks = 0.5 + 0.5 * sin(slant * 47.0 + 1.7 * sin(slant * 13.0));
     let lash = (1.0 - smoothstep(0.08, 0.46, upper)) * (0.26 + 0.20 * streaks);
     let shade = mix(0.10, 1.0, smoothstep(-0.02, 0.20, upper)) * (1.0 - lash);
-    let contact = mix(0.30, 1.0, smoothstep(-0.03, 0.17, min(upper, lower * 1.4)));
+    let contact = mix(0.30, 1.0, smoothstep(-0.03, 0.17, upper)) * mix(0.60, 1.0, smoothstep(-0.05, 0.10, lower));
     let corner = 1.0 - 0.6 * smoothstep(0.30, 0.90, abs(in.lids.x));
     let sky = mix(shade, 1.0, 0.25) * contact * corner;
     // The iris is a dish behind a lens: it brightens across from the lamp, and its rim shades it towards the lamp.
@@ -143,7 +143,8 @@ fn eye(in: EyeFragment) -> @location(0) vec4<f32> {
 
     // What the wet surface mirrors: the room at its edge, the lamps.
     let mirrored = reflect(-v, n);
-    let seen = smoothstep(-0.02, 0.05, upper) * smoothstep(0.0, 0.05, lower);
+    let below = smoothstep(-0.02, 0.05, upper);
+    let seen = below * smoothstep(0.0, 0.05, lower);
     let film = 0.025 + 0.50 * grazing(max(dot(n, v), 0.0));
     light += ambient_from(mirrored) * (film * sky);
     let glint = in.uv - in.whole.yz;
@@ -156,7 +157,7 @@ fn eye(in: EyeFragment) -> @location(0) vec4<f32> {
     light += frame.key_colour.rgb * ((box + glow * bulge) * in.whole.w * mix(seen, 1.0, 0.3));
     light += frame.fill_colour.rgb * (panel * seen * bulge);
     // Tears stand along the lower lid: a line that mirrors the lamp brightest below the catch-light.
-    let tear = smoothstep(0.0, 0.025, lower) * smoothstep(0.085, 0.045, lower) * seen;
+    let tear = smoothstep(0.065, 0.025, lower) * below;
     let under = in.uv.x - in.whole.y;
     light += frame.key_colour.rgb * (tear * corner * (0.07 + 0.34 * exp(-2.2 * under * under)));
     return developed(light);

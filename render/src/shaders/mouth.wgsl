@@ -39,11 +39,14 @@ struct MouthLight {
     thrown: f32,
 }
 
+// Lips are thick: nothing between them is nearer to the opening than that, mm.
+const LIP_DEPTH: f32 = 2.0;
+
 // Share of light from direction l (head's frame) that passes the opening, an ellipse with a soft edge.
 fn through_lips(p: vec3<f32>, l: vec3<f32>) -> f32 {
     let half = vec2(frame.mouth.w, frame.mouth_height.x);
     let ahead = frame.mouth.z - p.z;
-    let t = max(ahead, 0.0) / max(l.z, 0.15);
+    let t = max(ahead, LIP_DEPTH) / max(l.z, 0.15);
     let q = (p + l * t - frame.mouth.xyz).xy;
     // A lamp of some width: the further behind the lips, the softer their edge.
     let blur = 0.6 + t * 0.22;
@@ -65,8 +68,7 @@ fn edge_seen(a: vec3<f32>, b: vec3<f32>) -> vec3<f32> {
 fn opening_seen(p: vec3<f32>) -> vec3<f32> {
     let half = vec2(frame.mouth.w * 0.84, frame.mouth_height.x * 0.93);
     let to = frame.mouth.xyz - p;
-    // Never in its plane or before it.
-    let z = max(to.z, 0.7);
+    let z = max(to.z, LIP_DEPTH);
     let a = vec3(to.x - half.x, to.y - half.y, z);
     let b = vec3(to.x + half.x, to.y - half.y, z);
     let c = vec3(to.x + half.x, to.y + half.y, z);
@@ -80,12 +82,17 @@ fn mouth_light(p: vec3<f32>, n: vec3<f32>) -> MouthLight {
     var out: MouthLight;
     out.seen = max(length(opening), outside);
     // Flesh and enamel pass light on below their surface: what faces aside is dim, not black.
-    out.sky = max(max(dot(n, opening), 0.0) * 0.7 + out.seen * 0.5, outside);
-    out.key = through_lips(p, head_direction(frame.key_dir.xyz));
-    out.fill = through_lips(p, head_direction(frame.fill_dir.xyz));
+    out.sky = max(max(dot(n, opening), 0.0) * 1.05 + out.seen * 0.8, outside);
+    // Between lips that are hardly parted their own shine is missing too: the paper's factor, as far as it goes beyond
+    // what the opening hides.
+    let parted = mix(0.5, 1.0, smoothstep(0.0, 6.5, frame.mouth_height.x));
+    let through = mix(parted, 1.0, outside);
+    out.sky *= through;
+    out.key = through_lips(p, head_direction(frame.key_dir.xyz)) * through;
+    out.fill = through_lips(p, head_direction(frame.fill_dir.xyz)) * through;
     // A mouth is a cave: what comes in at its opening is shared by all its walls, about 2500 mm2 of them.
     let area = PI * frame.mouth.w * frame.mouth_height.x;
-    out.thrown = 0.6 * area / (area + 2500.0);
+    out.thrown = 0.9 * area / (area + 2500.0);
     return out;
 }
 

@@ -16,7 +16,7 @@ fn teeth(in: MouthFragment) -> @location(0) vec4<f32> {
 
     let neck = smoothstep(0.30, 0.95, in.uv.y);
     let shade = value_noise(vec2(in.head.x * 0.9, in.uv.y * 2.0)) - 0.5;
-    var albedo = mix(vec3(0.640, 0.575, 0.465), vec3(0.54, 0.435, 0.29), neck) * (1.0 + 0.07 * shade);
+    var albedo = mix(vec3(0.575, 0.515, 0.415), vec3(0.50, 0.40, 0.27), neck) * (1.0 + 0.07 * shade);
     // Between crowns dentine is deep and light goes astray.
     albedo *= mix(vec3(0.62, 0.52, 0.44), vec3(1.0), smoothstep(0.05, 0.75, dot(n, row)));
     // Only incisors and canines are thin at the edge; molars end in a flat crown.
@@ -26,5 +26,7 @@ fn teeth(in: MouthFragment) -> @location(0) vec4<f32> {
     let behind = max(frame.mouth.z - 11.0 - in.head.z, 0.0);
     let depth = 1.0 - exp(-0.075 * behind);
     let light = wet_surface(in, inside, body, n, albedo, 0.20, 0.05, 0.35);
-    return developed(light * mix(vec3(1.0), vec3(0.45, 0.27, 0.21), depth));
+    // What little comes past the lips has their colour.
+    let past = mix(vec3(1.12, 0.93, 0.82), vec3(1.0), smoothstep(0.05, 0.45, inside.seen));
+    return developed(light * past * mix(vec3(1.0), vec3(0.45, 0.27, 0.21), depth));
 }
