@@ -14,11 +14,12 @@ pub(crate) struct PartGeometry {
 }
 
 impl PartGeometry {
-    pub(crate) fn of(head: &Head, material: Material) -> Self {
+    /// For pictures of that many samples a pixel.
+    pub(crate) fn of(head: &Head, material: Material, samples: u32) -> Self {
         let mut geometry = Self::default();
         for part in head.parts.iter().filter(|p| p.material == material) {
             if material == Material::Hair {
-                geometry.add(part, &hairs::dressed(head, part));
+                geometry.add(part, &hairs::dressed(head, part, samples > 1));
             } else {
                 geometry.add(part, &part.mesh);
             }

@@ -45,8 +45,8 @@ struct Card {
     pairs: usize,
 }
 
-/// The hair as it is drawn.
-pub(crate) fn dressed(head: &Head, part: &Part) -> Mesh {
+/// The hair as it is drawn, `fine` with single hairs: where a pixel is one sample they are too thin to be seen.
+pub(crate) fn dressed(head: &Head, part: &Part, fine: bool) -> Mesh {
     let mesh = &part.mesh;
     let cards = cards(mesh);
     if cards.is_empty() {
@@ -56,12 +56,14 @@ pub(crate) fn dressed(head: &Head, part: &Part) -> Mesh {
     let hairline = Hairline::of(head);
     let mut dice = Dice::new(4711);
     // Outermost first, as the cards lie: what is hidden need not be shaded.
-    if let Some(hairline) = &hairline {
+    if let Some(hairline) = hairline.as_ref().filter(|_| fine) {
         grow_fine(&mut out, head, hairline, &roots(mesh, &cards), &mut dice);
     }
     for card in &cards {
         if mesh.uvs[card.first].x * COLUMNS as f32 > (DENSE + LOOSE) as f32 {
-            single(&mut out, mesh, card, &mut dice);
+            if fine {
+                single(&mut out, mesh, card, &mut dice);
+            }
         } else {
             split(&mut out, mesh, card, &mut dice);
         }
@@ -376,7 +378,7 @@ mod tests {
     fn wide_cards_are_split_and_fine_hair_grows_at_the_hairline() {
         let head = Head::reference().unwrap();
         let part = hair(&head);
-        let mesh = dressed(&head, part);
+        let mesh = dressed(&head, part, true);
         let count = mesh.positions.len();
         assert!(mesh.triangles.len() > part.mesh.triangles.len());
         // What a picture may cost: see the bench.
@@ -408,6 +410,8 @@ mod tests {
         // Single hairs before the hairline: none in the head's own mesh.
         let fine = mesh.uvs.iter().filter(|uv| uv.x > 1.5).count();
         assert!(fine > 1000, "{fine} vertices of single hairs");
+        let coarse = dressed(&head, part, false);
+        assert!(coarse.uvs.iter().all(|uv| uv.x < 1.5));
     }
 
     #[test]
@@ -421,7 +425,7 @@ mod tests {
             occlusion: vec![1.0; 3],
             triangles: vec![[0, 1, 2]],
         };
-        assert_eq!(dressed(&head, &part).triangles, part.mesh.triangles);
+        assert_eq!(dressed(&head, &part, true).triangles, part.mesh.triangles);
     }
 
     #[test]

@@ -122,7 +122,7 @@ impl Renderer {
         let parts = DRAW_ORDER
             .into_iter()
             .filter_map(|material| {
-                let geometry = PartGeometry::of(head, material);
+                let geometry = PartGeometry::of(head, material, samples);
                 (!geometry.indices.is_empty()).then(|| {
                     let buffers = PartBuffers {
                         vertices: upload::buffer(gpu, "part", &geometry.vertices, vertex),

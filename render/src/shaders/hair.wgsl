@@ -41,12 +41,20 @@ struct HairFragment {
     @location(2) behind: vec4<f32>,
 }
 
+// A broad highlight over the sine of the angle to a strand, zero at one.
+fn round_lobe(sine: f32) -> f32 {
+    let s = max(1.0 - sine * sine, 0.0);
+    return s * s * s;
+}
+
 @vertex
 fn hair_vertex(in: PartVertex) -> HairFragment {
-    let at = placed(in, 0.0);
-    let n = normalize(at.normal);
-    let v = normalize(frame.eye.xyz - at.world);
-    let t = normalize((frame.bodies[in.bodies.x] * vec4(strand_direction(in.shares.zw), 0.0)).xyz);
+    // Hair hangs on one body, and what is turned keeps its length.
+    let body = frame.bodies[in.bodies.x];
+    let world = (body * vec4(in.rest, 1.0)).xyz;
+    let n = (body * vec4(in.normal, 0.0)).xyz;
+    let t = (body * vec4(strand_direction(in.shares.zw), 0.0)).xyz;
+    let v = normalize(frame.eye.xyz - world);
     let l = frame.key_dir.xyz;
     let r = frame.rim_dir.xyz;
     let h = normalize(l + v);
@@ -60,10 +68,10 @@ fn hair_vertex(in: PartVertex) -> HairFragment {
     let thin = 1.0 - clamp(dot(n, v), 0.0, 1.0);
     let cone = dot(t, r) + dot(t, v);
     let ahead = max(-dot(r, v) * 0.6 + 0.4, 0.0);
-    let behind = frame.rim_colour.rgb * (exp2(-cone * cone * 4.0) * ahead * thin * thin * deep * deep);
+    let behind = frame.rim_colour.rgb * (round_lobe(cone) * ahead * thin * thin * deep * deep);
 
     var out: HairFragment;
-    out.clip = frame.clip_from_world * vec4(at.world, 1.0);
+    out.clip = frame.clip_from_world * vec4(world, 1.0);
     var uv = in.uv;
     var cover = 2.0;
     if uv.x > 1.5 {
@@ -74,7 +82,7 @@ fn hair_vertex(in: PartVertex) -> HairFragment {
         let half = SINGLE_MM * (1.0 - 0.8 * uv.y * uv.y);
         let drawn = max(half, 0.5 * pixel);
         let across = normalize(cross(v, t)) * select(-drawn, drawn, right);
-        out.clip = frame.clip_from_world * vec4(at.world + across, 1.0);
+        out.clip = frame.clip_from_world * vec4(world + across, 1.0);
         cover = half / drawn;
         uv = vec2(uv.x - select(2.0, 6.0, right), 0.35 + 0.2 * uv.y);
     }
@@ -83,7 +91,7 @@ fn hair_vertex(in: PartVertex) -> HairFragment {
         + rim * 0.7, dot(key, vec3(0.3333)) * facing * deep);
     let rim_along = dot(t, normalize(r + v));
     out.behind = vec4(behind * THROUGH * 0.35
-        + SHINE * (0.022 * dot(rim, vec3(0.3333)) * exp2(-rim_along * rim_along * 12.0)), cover);
+        + SHINE * (0.022 * dot(rim, vec3(0.3333)) * round_lobe(2.0 * rim_along)), cover);
     out.places = vec4(uv, dot(t, h), dot(n, h));
     return out;
 }

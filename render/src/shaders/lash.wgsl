@@ -59,7 +59,8 @@ fn lash_vertex(in: PartVertex) -> LashFragment {
     let up = vec3(frame.clip_from_world[0].y, frame.clip_from_world[1].y, frame.clip_from_world[2].y);
     let pixel = 2.0 * distance / (length(up) * frame.picture.y);
     let fine = half * select(FINE_UPPER, FINE_LOWER, lower);
-    let drawn = max(fine, pixel * 0.5);
+    // One sample has no half tones: a blade that wide would be a bar.
+    let drawn = max(fine, pixel * select(0.5, 0.35, SAMPLES == 1u));
 
     // Brown where light gets through the thin tips.
     let albedo = mix(vec3(0.010, 0.007, 0.006), vec3(0.040, 0.026, 0.019), tip);
@@ -81,7 +82,7 @@ fn lash_vertex(in: PartVertex) -> LashFragment {
 @fragment
 fn lash(in: LashFragment) -> @location(0) vec4<f32> {
     let samples = f32(SAMPLES);
-    let covered = floor(in.light.w * samples + select(0.5, 0.7, SAMPLES == 1u));
+    let covered = floor(in.light.w * samples + select(0.5, 0.55, SAMPLES == 1u));
     if covered < 0.5 {
         discard;
     }
