@@ -15,6 +15,6 @@ fn tongue(in: MouthFragment) -> @location(0) vec4<f32> {
     let rough = normalize(body + vec3(bumps.x, 0.0, bumps.y) * 0.5);
     let furrow = 1.0 - 0.30 * exp(-in.head.x * in.head.x * 0.22);
     let dots = smoothstep(0.66, 0.86, value_noise(p * 1.5 + 9.0));
-    let coat = mix(vec3(0.60, 0.285, 0.255), vec3(0.52, 0.165, 0.145), max(dots * 0.8, 0.5 - fine.x));
+    let coat = mix(vec3(0.58, 0.325, 0.300), vec3(0.49, 0.205, 0.185), max(dots * 0.8, 0.5 - fine.x));
     return developed(wet_surface(in, lit_mouth(in, rough), rough, n, coat * (furrow * (1.0 + 0.3 * coarse.y)), 0.30, 0.06, 0.40));
 }
