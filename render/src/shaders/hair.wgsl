@@ -24,9 +24,9 @@ const SHINE: vec3<f32> = vec3(1.0, 0.86, 0.72);
 // Tilt of the scales as the tangent's shift, and how much it differs from strand to strand.
 const TILT: f32 = 0.10;
 const JITTER: f32 = 0.34;
-// One over twice the squared width of the mirrored lobe, in octaves; of the coloured one.
-const SHARP: f32 = 95.0;
-const BROAD: f32 = 15.0;
+// How narrow the mirrored lobe is, and the coloured one: see fibre_lobe.
+const SHARP: f32 = 16.5;
+const BROAD: f32 = 2.6;
 
 // Half the width of a single hair at its root, mm: of two that lie together.
 const SINGLE_MM: f32 = 0.075;
@@ -38,13 +38,20 @@ struct HairFragment {
     // Light that the strands' colour multiplies; key light that highlights may have.
     @location(1) light: vec4<f32>,
     // Light from behind through the strands; cover of a single hair, 2 on cards, whose map has theirs.
-    @location(2) behind: vec4<f32>,
+    @location(2) behind: vec2<f32>,
 }
 
 // A broad highlight over the sine of the angle to a strand, zero at one.
 fn round_lobe(sine: f32) -> f32 {
     let s = max(1.0 - sine * sine, 0.0);
     return s * s * s;
+}
+
+// Nearly a bell curve, without a power: software rendering feels it.
+fn fibre_lobe(sine: f32, narrow: f32) -> f32 {
+    let s = max(1.0 - narrow * sine * sine, 0.0);
+    let s2 = s * s;
+    return s2 * s2;
 }
 
 @vertex
@@ -68,7 +75,7 @@ fn hair_vertex(in: PartVertex) -> HairFragment {
     let thin = 1.0 - clamp(dot(n, v), 0.0, 1.0);
     let cone = dot(t, r) + dot(t, v);
     let ahead = max(-dot(r, v) * 0.6 + 0.4, 0.0);
-    let behind = frame.rim_colour.rgb * (round_lobe(cone) * ahead * thin * thin * deep * deep);
+    let behind = dot(frame.rim_colour.rgb, vec3(0.3333)) * (round_lobe(cone) * ahead * thin * thin * deep * deep);
 
     var out: HairFragment;
     out.clip = frame.clip_from_world * vec4(world, 1.0);
@@ -90,8 +97,7 @@ fn hair_vertex(in: PartVertex) -> HairFragment {
         + (frame.fill_colour.rgb * max(dot(n, frame.fill_dir.xyz) * 0.5 + 0.5, 0.0) + ambient_from(n)) * (deep * deep)
         + rim * 0.7, dot(key, vec3(0.3333)) * facing * deep);
     let rim_along = dot(t, normalize(r + v));
-    out.behind = vec4(behind * THROUGH * 0.35
-        + SHINE * (0.022 * dot(rim, vec3(0.3333)) * round_lobe(2.0 * rim_along)), cover);
+    out.behind = vec2(0.35 * behind + 0.055 * dot(rim, vec3(0.3333)) * round_lobe(2.0 * rim_along), cover);
     out.places = vec4(uv, dot(t, h), dot(n, h));
     return out;
 }
@@ -103,7 +109,7 @@ fn hair(in: HairFragment) -> @location(0) vec4<f32> {
     let along = select(in.places.y, 0.55 * (2.0 + in.places.y), cap);
     let map = textureSample(hair_map, map_sampler, vec2(in.places.x, along));
     let card = select(map.a, max(map.a, 1.0 - 2.5 * (-1.0 - in.places.y)), cap);
-    let cover = select(card, in.behind.w, in.behind.w < 1.5);
+    let cover = select(card, in.behind.y, in.behind.y < 1.5);
     // Whole samples: every card rounds alike. Keep in step with maps/hair.rs.
     let samples = f32(SAMPLES);
     let covered = floor(cover * samples + 0.5);
@@ -119,8 +125,8 @@ fn hair(in: HairFragment) -> @location(0) vec4<f32> {
     let base = mix(DARK, PALE, tone * tone);
     let near = reached * reached;
     let light = base * (in.light.rgb * reached)
-        + (SHINE * (0.055 * exp2(-mirrored * mirrored * SHARP))
-            + base * (1.35 * exp2(-coloured * coloured * BROAD))) * (in.light.w * near * (0.4 + map.b))
-        + in.behind.rgb * reached;
+        + (SHINE * (0.055 * fibre_lobe(mirrored, SHARP))
+            + base * (1.35 * fibre_lobe(coloured, BROAD))) * (in.light.w * near * (0.4 + map.b))
+        + THROUGH * (in.behind.x * reached);
     return vec4(developed(light).rgb, covered / samples);
 }

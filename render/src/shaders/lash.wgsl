@@ -21,7 +21,7 @@ const FAN_MM: f32 = 1.5;
 
 struct LashFragment {
     @builtin(position) clip: vec4<f32>,
-    // Light; w: cover.
+    // Light; w: cover, and what it is rounded with: one lash up, another down, so that many do not make one veil.
     @location(0) light: vec4<f32>,
 }
 
@@ -75,14 +75,14 @@ fn lash_vertex(in: PartVertex) -> LashFragment {
     var out: LashFragment;
     out.clip = frame.clip_from_world * vec4(at.world + seen * drawn, 1.0);
     out.light = vec4(albedo * (ambient_from(n) + 0.5 * frame.key_colour.rgb * abs(dot(n, frame.key_dir.xyz))) + shine,
-        fine / drawn);
+        fine / drawn + (0.05 + 0.9 * chance) / f32(SAMPLES));
     return out;
 }
 
 @fragment
 fn lash(in: LashFragment) -> @location(0) vec4<f32> {
     let samples = f32(SAMPLES);
-    let covered = floor(in.light.w * samples + select(0.5, 0.55, SAMPLES == 1u));
+    let covered = min(floor(in.light.w * samples), samples);
     if covered < 0.5 {
         discard;
     }
