@@ -4,6 +4,9 @@
 //!
 //! Hair that is not made of cards (see the head shop's `hair`) is left as it is.
 
+mod fine;
+
+use fine::{grow_fine, roots, single};
 use glam::{Vec2, Vec3, vec2};
 use mouthpiece_rig::{Head, Material, Mesh, Part};
 
@@ -18,9 +21,6 @@ const WIDE_MM: f32 = 7.0;
 const SPLIT_MAX: usize = 2;
 /// How deep within the hairline the cap is whole, and how deep it is gone, mm.
 const CAP_MM: [f32; 2] = [11.0, 4.0];
-/// Short hairs a square mm, and how far off the hairline they grow, outside and inside, mm.
-const FINE_DENSITY: f32 = 0.17;
-const FINE_MM: [f32; 2] = [-4.5, 6.0];
 /// Least light at the roots of cards, as a share of what the head says is missing there.
 const LEAST_LIGHT: f32 = 0.55;
 /// Light on the cap, and how much of the head's own unevenness is left: it is seen between the cards.
@@ -31,12 +31,6 @@ const CAP_UNEVEN: f32 = 0.25;
 const SHADE: f32 = 0.42;
 const SHADE_MM: [f32; 2] = [-9.0, 2.0];
 const PAINTED_MM: [f32; 2] = [3.0, 10.0];
-/// `uv.x` of a single hair: 2 on its left side, 6 on its right one, plus the place in the map that gives its tone. Keep in
-/// step with shaders/hair.wgsl, which gives it its width.
-const SINGLE: [f32; 2] = [2.0, 6.0];
-/// How far from a card's root its growth is still known, mm.
-const KNOWN_MM: f32 = 22.0;
-
 /// A ribbon: pairs of vertices from root to tip.
 #[derive(Clone, Debug)]
 struct Card {
@@ -96,19 +90,6 @@ fn cards(mesh: &Mesh) -> Vec<Card> {
         i = first + 2 * pairs;
     }
     cards
-}
-
-/// Where cards begin and which way they grow.
-fn roots(mesh: &Mesh, cards: &[Card]) -> Vec<(Vec3, Vec3)> {
-    let middle = |i: usize| 0.5 * (mesh.positions[i] + mesh.positions[i + 1]);
-    cards
-        .iter()
-        .map(|card| {
-            let root = middle(card.first);
-            let along = middle(card.first + 2) - root;
-            (root, along.normalize_or(Vec3::NEG_Y))
-        })
-        .collect()
 }
 
 /// Adds a ribbon's next pair.
@@ -202,107 +183,6 @@ fn split(out: &mut Mesh, mesh: &Mesh, card: &Card, dice: &mut Dice) {
         }
         join(out, first);
     }
-}
-
-/// Short fine hairs on both sides of the hairline, as the cards near by grow, shorter the farther out.
-fn grow_fine(
-    out: &mut Mesh,
-    head: &Head,
-    hairline: &Hairline,
-    roots: &[(Vec3, Vec3)],
-    dice: &mut Dice,
-) {
-    let skin = &head.skin.mesh;
-    let depth: Vec<f32> = skin.uvs.iter().map(|uv| hairline.depth_mm(*uv)).collect();
-    let [outside, inside] = FINE_MM;
-    for t in &skin.triangles {
-        let corner = t.map(|i| i as usize);
-        if corner.iter().all(|&i| depth[i] < outside) || corner.iter().all(|&i| depth[i] > inside) {
-            continue;
-        }
-        let [a, b, c] = corner.map(|i| skin.positions[i]);
-        let area = 0.5 * (b - a).cross(c - a).length();
-        let count = (area * FINE_DENSITY + dice.roll()) as usize;
-        for _ in 0..count {
-            let (p, q) = (dice.roll(), dice.roll());
-            let (p, q) = if p + q > 1.0 {
-                (1.0 - p, 1.0 - q)
-            } else {
-                (p, q)
-            };
-            let mix = |v: [f32; 3]| v[0] + (v[1] - v[0]) * p + (v[2] - v[0]) * q;
-            let deep = mix(corner.map(|i| depth[i]));
-            let root = a + (b - a) * p + (c - a) * q;
-            let edge = ramp(outside, inside, deep);
-            // The farther out the fewer.
-            if deep < outside || deep > inside || dice.roll() > 0.15 + edge {
-                continue;
-            }
-            let known = roots
-                .iter()
-                .map(|(at, along)| (at.distance_squared(root), *along))
-                .min_by(|a, b| a.0.total_cmp(&b.0));
-            let Some((_, along)) = known.filter(|k| k.0 < KNOWN_MM * KNOWN_MM) else {
-                continue;
-            };
-            let normal = corner
-                .iter()
-                .map(|&i| skin.normals[i])
-                .sum::<Vec3>()
-                .normalize_or(Vec3::Z);
-            let length = (3.0 + 7.0 * edge) * (0.7 + 0.6 * dice.roll());
-            fine_hair(out, root, normal, along, length, dice);
-        }
-    }
-}
-
-/// One of them, from the skin and along it.
-fn fine_hair(out: &mut Mesh, root: Vec3, normal: Vec3, along: Vec3, length: f32, dice: &mut Dice) {
-    const STEPS: usize = 2;
-    let first = out.positions.len();
-    let flat = (along - normal * along.dot(normal)).normalize_or(normal.any_orthonormal_vector());
-    let side = normal.cross(flat);
-    let mut heading = (flat + side * (0.9 * dice.spread())).normalize_or(flat);
-    let bend = side * (0.8 * dice.spread());
-    let tone = 0.5 * dice.roll();
-    let light = 0.75 + 0.2 * dice.roll();
-    let mut place = root;
-    for i in 0..=STEPS {
-        let v = i as f32 / STEPS as f32;
-        let at = place + normal * (0.1 + 1.1 * v * (1.0 - 0.35 * v));
-        push_pair(
-            out,
-            at,
-            at,
-            [normal; 2],
-            SINGLE.map(|x| vec2(x + tone, v)),
-            light,
-        );
-        heading = (heading + bend * 0.5).normalize_or(heading);
-        place += heading * (length / STEPS as f32);
-    }
-    join(out, first);
-}
-
-/// A hair in place of a card that shows a few: it has the width of hairs at any distance.
-fn single(out: &mut Mesh, mesh: &Mesh, card: &Card, dice: &mut Dice) {
-    let first = out.positions.len();
-    let [from, to] = [dice.roll(), dice.roll()];
-    let tone = 0.5 * dice.roll();
-    for i in 0..card.pairs {
-        let at = card.first + 2 * i;
-        let v = mesh.uvs[at].y;
-        let place = mesh.positions[at].lerp(mesh.positions[at + 1], from + (to - from) * v);
-        push_pair(
-            out,
-            place,
-            place,
-            [(mesh.normals[at] + mesh.normals[at + 1]).normalize_or(Vec3::Y); 2],
-            SINGLE.map(|x| vec2(x + tone, v)),
-            mesh.occlusion[at],
-        );
-    }
-    join(out, first);
 }
 
 /// Light scatters on between strands: what lies deep is not black.
