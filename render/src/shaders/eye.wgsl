@@ -79,7 +79,7 @@ fn eye_vertex(in: PartVertex) -> EyeFragment {
     out.lids = vec4(over, dot(frame.lids[side * 2u].xyz, poly), dot(frame.lids[side * 2u + 1u].xyz, poly));
     let visible = mix(key_visible(shadow_place(at.world, n)), 1.0, 0.25);
     let wrap = vec3(0.35, 0.25, 0.22);
-    let dim = mix(0.5, 1.0, open);
+    let dim = mix(0.6, 1.0, open);
     out.key = frame.key_colour.rgb * max((vec3(dot(n, frame.key_dir.xyz)) + wrap) / (1.0 + wrap), vec3(0.0)) * (visible * dim);
     out.soft = (frame.fill_colour.rgb * max(dot(n, frame.fill_dir.xyz) * 0.7 + 0.3, 0.0) + ambient_from(n)) * dim;
     return out;
@@ -130,8 +130,10 @@ fn eye(in: EyeFragment) -> @location(0) vec4<f32> {
     let lower = in.lids.y - in.lids.w;
     let slant = in.lids.x + upper * key.x / max(key.z, 0.3);
     let streaks = 0.5 + 0.5 * sin(slant * 47.0 + 1.7 * sin(slant * 13.0));
-    let lash = (1.0 - smoothstep(0.08, 0.46, upper)) * (0.26 + 0.20 * streaks);
-    let shade = mix(0.10, 1.0, smoothstep(-0.02, 0.20, upper)) * (1.0 - lash);
+    // As the lids come down so do the lashes: what they shade narrows with the gap.
+    let gap = clamp((in.lids.z - in.lids.w) * 1.6, 0.3, 1.0);
+    let lash = (1.0 - smoothstep(0.08, 0.46, upper / gap)) * (0.26 + 0.20 * streaks) * gap;
+    let shade = mix(0.14, 1.0, smoothstep(-0.02, 0.20, upper / gap)) * (1.0 - lash);
     let contact = mix(0.30, 1.0, smoothstep(-0.03, 0.17, upper)) * mix(0.60, 1.0, smoothstep(-0.05, 0.10, lower));
     let corner = 1.0 - 0.6 * smoothstep(0.30, 0.90, abs(in.lids.x));
     let sky = mix(shade, 1.0, 0.25) * contact * corner;

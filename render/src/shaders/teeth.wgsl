@@ -16,7 +16,7 @@ fn teeth(in: MouthFragment) -> @location(0) vec4<f32> {
 
     let neck = smoothstep(0.30, 0.95, in.uv.y);
     let shade = value_noise(vec2(in.head.x * 0.9, in.uv.y * 2.0)) - 0.5;
-    var albedo = mix(vec3(0.575, 0.515, 0.415), vec3(0.50, 0.40, 0.27), neck) * (1.0 + 0.07 * shade);
+    var albedo = mix(vec3(0.545, 0.488, 0.395), vec3(0.50, 0.40, 0.27), neck) * (1.0 + 0.07 * shade);
     // Between crowns dentine is deep and light goes astray.
     albedo *= mix(vec3(0.62, 0.52, 0.44), vec3(1.0), smoothstep(0.05, 0.75, dot(n, row)));
     // Only incisors and canines are thin at the edge; molars end in a flat crown.
