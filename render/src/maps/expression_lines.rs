@@ -119,8 +119,8 @@ impl Face<'_> {
                     off(ch, 17.5, -3.0),
                     off(ch, 18.0, 6.0),
                 ],
-                depth_mm: 0.85,
-                half_width_mm: 2.1,
+                depth_mm: 0.50,
+                half_width_mm: 2.9,
                 shoulders: cheek(0.55, 0.08),
                 fade: [0.20, 0.40],
             });
@@ -130,15 +130,15 @@ impl Face<'_> {
                     off(ch, 26.5, -6.0),
                     off(ch, 26.5, 4.0),
                 ],
-                depth_mm: 0.22,
-                half_width_mm: 1.7,
+                depth_mm: 0.14,
+                half_width_mm: 2.3,
                 shoulders: cheek(0.5, 0.3),
                 fade: [0.35, 0.35],
             });
             creases.push(Crease {
                 points: vec![off(ch, 3.5, -1.5), off(ch, 6.0, 1.0), off(ch, 6.5, 5.0)],
-                depth_mm: 0.40,
-                half_width_mm: 0.9,
+                depth_mm: 0.24,
+                half_width_mm: 1.3,
                 shoulders: cheek(0.4, 0.1),
                 fade: [0.25, 0.4],
             });

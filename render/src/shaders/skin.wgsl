@@ -80,6 +80,6 @@ fn skin(in: SkinFragment) -> @location(0) vec4<f32> {
     light += vec3(others.w * oiled);
     // Light from behind shines red through ears and nostrils.
     let behind = max(0.35 - dot(smooth_n, frame.rim_dir.xyz), 0.0);
-    light += frame.rim_colour.rgb * vec3(0.045, 0.009, 0.005) * (s.through * in.shares.z * (0.4 + behind));
+    light += frame.rim_colour.rgb * vec3(0.024, 0.006, 0.003) * (s.through * in.shares.z * (0.4 + behind));
     return developed(light);
 }
