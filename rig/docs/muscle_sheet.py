@@ -16,7 +16,7 @@ import sheet
 
 # What of the picture is shown, in sheet.py's pixels: brows and eyes, nose, mouth and chin, cheek and jaw.
 CELL = (120, 90)
-UPPER, NOSE, LOWER, CHEEK = (60, 82), (60, 112), (60, 146), (82, 140)
+UPPER, NOSE, LOWER, CHEEK = (60, 88), (60, 136), (60, 178), (62, 150)
 MUSCLES = {
     "orbicularis_oris_superior": ("front", LOWER),
     "orbicularis_oris_inferior": ("front", LOWER),

@@ -27,10 +27,10 @@ VIEWS = ["front", "34", "side"]
 BYTES_MAX = 280_000
 # Of the sheet of expressions: faces a row, and what of the picture is shown, since hair and shirt say nothing.
 COLUMNS = 7
-FACE = (45, 75, 195, 255)
+FACE = (36, 70, 204, 274)
 # The same of the sheet of phones: the mouth from the front and from the side.
 PHONES_A_ROW = 6
-MOUTHS = {"front": (72, 160, 168, 240), "side": (22, 160, 102, 240)}
+MOUTHS = {"front": (72, 182, 168, 262), "side": (6, 176, 86, 256)}
 # TIMIT's phones by class, as its documentation has them; what is silent has one face.
 PHONES = """iy ih eh ey ae aa aw ay ah ao oy ow uh uw ux er ax ix axr ax-h l r w y hh hv el
 m em n en eng ng nx b d g p t k dx q bcl dcl gcl pcl tcl kcl jh ch s sh z zh f v th dh h#""".split()
