@@ -48,11 +48,13 @@ const MEASURES: usize = 4;
 const WEIGHTS: [f32; MEASURES] = [1.0, 0.45, 0.8, 2.0];
 const EFFORT: [f32; SOLVED.len()] = [0.5, 0.5, 1.6, 1.0, 1.6, 0.3, 0.3];
 /// Weight that keeps both halves of the orbicularis oris alike in contraction and in protrusion.
-const ALIKE: f32 = 1.2;
+const ALIKE: f32 = 12.0;
 /// Which of the solved are those halves.
 const PAIRS: [(usize, usize); 2] = [(0, 1), (5, 6)];
-/// Steps towards a posture, and what holds them back: always, and per square of what is missed, weighted.
-const IMPROVEMENTS: usize = 60;
+/// Steps towards a posture, and those of them that the target takes to get where it is wanted.
+const IMPROVEMENTS: usize = 100;
+const APPROACH: usize = 50;
+/// What holds them back: always, and per square of what is missed, weighted.
 const HOLD: f32 = 4.0;
 const HOLD_PER_MISSED: f32 = 0.6;
 
@@ -136,8 +138,13 @@ impl Calibration {
             weights[3] = 0.0;
         }
         // Always as many steps, each a smooth function of the last: so is the whole.
-        for _ in 0..IMPROVEMENTS {
-            x = self.improved(&x, &wanted, &weights);
+        // The target sets out from where the mouth is: of several ways to reach it, that is taken which leads there
+        // from rest, not now the one and now the other.
+        let rest = self.value(&x);
+        for i in 1..=IMPROVEMENTS {
+            let share = (i as f32 / APPROACH as f32).min(1.0);
+            let on_the_way = std::array::from_fn(|m| rest[m] + (wanted[m] - rest[m]) * share);
+            x = self.improved(&x, &on_the_way, &weights);
         }
         let mut controls = controls_of(&x);
         controls[Control::Jaw] = articulation.jaw_rad;
@@ -235,7 +242,8 @@ impl Calibration {
         }
         let mut there = *x;
         for (value, change) in there.iter_mut().zip(step) {
-            *value += change;
+            // Half of the way: the whole would swing to and fro between bounds.
+            *value += 0.5 * change;
         }
         there
     }

@@ -1,7 +1,7 @@
 //! How the tissue is made, as functions of a place on the reference head: which skin moves, how fast it
 //! is to the bone under it, what share of the mandible's motion it takes. Which fibres hold it: `holds`.
 //!
-//! All vertices have the same mass: on a graded mesh, masses by area would force a step several times
+//! All vertices have the same mass, but at the corners of the mouth: on a graded mesh, masses by area would force a step several times
 //! shorter. Stiffness is therefore given per unit of mass, in 1/s².
 
 use glam::Vec3;
