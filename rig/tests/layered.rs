@@ -3,6 +3,7 @@
 
 use mouthpiece_rig::{Control, TissueModel};
 
+mod models;
 mod moves;
 
 use moves::{by_half_the_step, cheeks_keep_their_volume, lags};

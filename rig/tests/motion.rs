@@ -5,9 +5,11 @@ use std::sync::Arc;
 
 use mouthpiece_rig::{Control, Controls, Simulation, TissueModel};
 
+mod models;
 mod moves;
 
-use moves::{SECOND, by_half_the_step, free, head, lags, settled, told};
+use models::{head, settled};
+use moves::{SECOND, by_half_the_step, free, lags, told};
 
 #[test]
 fn left_alone_and_undamped_it_keeps_its_energy() {

@@ -1,46 +1,21 @@
 //! What must hold of a head in motion whichever of its two models of tissue moves the skin.
 
-use std::sync::{Arc, OnceLock};
+use std::sync::Arc;
 
 use assert_no_alloc::{AllocDisabler, assert_no_alloc};
 use glam::Vec3;
 use mouthpiece_rig::{
-    Control, Controls, Head, KeyFrame, Muscle, STEP_TICKS, Simulation, TICK_RATE, TissueModel,
+    Control, Controls, KeyFrame, Muscle, STEP_TICKS, Simulation, TICK_RATE, TissueModel,
 };
 
 mod deeds;
+mod models;
 
 use deeds::{DEEDS, vertex};
+use models::{head, settled};
 
 #[global_allocator]
 static ALLOCATOR: AllocDisabler = AllocDisabler;
-
-/// The reference head with that tissue.
-#[allow(
-    clippy::unwrap_used,
-    reason = "a helper of tests; clippy sees only test functions"
-)]
-fn head(model: TissueModel) -> &'static Arc<Head> {
-    static HEADS: OnceLock<[Arc<Head>; 2]> = OnceLock::new();
-    let heads = HEADS.get_or_init(|| {
-        [TissueModel::Springs, TissueModel::Layered].map(|model| {
-            let mut head = Head::reference().unwrap();
-            head.tissue.model = model;
-            Arc::new(head)
-        })
-    });
-    &heads[usize::from(model == TissueModel::Layered)]
-}
-
-/// The head after `steps` towards `controls`.
-fn settled(simulation: &mut Simulation, controls: &Controls, steps: usize) -> KeyFrame {
-    for _ in 0..steps {
-        simulation.step(controls);
-    }
-    let mut frame = simulation.head().rest_frame();
-    simulation.save(&mut frame);
-    frame
-}
 
 /// The head as it stands when nothing has moved it: contact may have settled it a little.
 fn undisturbed(model: TissueModel) -> KeyFrame {

@@ -9,41 +9,18 @@ use std::sync::{Arc, OnceLock};
 
 use glam::Vec3;
 use mouthpiece_rig::lip_level::CREST;
-use mouthpiece_rig::{
-    Control, Controls, Head, KeyFrame, Muscle, STEP_TICKS, Simulation, TICK_RATE, TissueModel,
-};
+use mouthpiece_rig::{Control, Controls, Muscle, STEP_TICKS, Simulation, TICK_RATE, TissueModel};
+
+use crate::models::{head, settled};
 
 /// Steps in a second.
 pub(crate) const SECOND: usize = (TICK_RATE / STEP_TICKS) as usize;
-
-/// The reference head with that tissue.
-pub(crate) fn head(model: TissueModel) -> &'static Arc<Head> {
-    static HEADS: OnceLock<[Arc<Head>; 2]> = OnceLock::new();
-    let heads = HEADS.get_or_init(|| {
-        [TissueModel::Springs, TissueModel::Layered].map(|model| {
-            let mut head = Head::reference().unwrap();
-            head.tissue.model = model;
-            Arc::new(head)
-        })
-    });
-    &heads[usize::from(model == TissueModel::Layered)]
-}
 
 /// A head that nothing but its tissue stops.
 pub(crate) fn free(model: TissueModel) -> Simulation {
     let mut simulation = Simulation::new(Arc::clone(head(model)));
     simulation.set_contacts(false);
     simulation
-}
-
-/// The head after `steps` towards `controls`.
-pub(crate) fn settled(simulation: &mut Simulation, controls: &Controls, steps: usize) -> KeyFrame {
-    for _ in 0..steps {
-        simulation.step(controls);
-    }
-    let mut frame = simulation.head().rest_frame();
-    simulation.save(&mut frame);
-    frame
 }
 
 pub(crate) fn told(settings: &[(Control, f32)]) -> Controls {

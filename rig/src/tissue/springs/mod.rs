@@ -67,8 +67,6 @@ pub(crate) struct Springs {
     mesh: Mesh,
     places: Places,
     lids: Lids,
-    /// 1 over each node's mass.
-    light: Vec<f32>,
     cheeks: [Cheek; 2],
     /// How a cheek's volume changes with its nodes.
     gradient: Vec<Vec3A>,
@@ -140,7 +138,6 @@ impl Springs {
                 let of = |i: &u32| mesh.gradient_of(*i as usize).map(|g| g as u32);
                 cheek.nodes.iter().filter_map(of).collect()
             }),
-            light: ground.iter().map(|g| (1.0 + g.heavier).recip()).collect(),
             springs: numbering.edges.len() + ground.len() + holds.len() + lids.len(),
             per_mass: head.tissue.stiffness_scale(),
             nodes,
@@ -182,9 +179,9 @@ impl Springs {
             &kick,
         );
         let Nodes { place, velocity } = &mut self.nodes;
-        let light = &self.light;
+        let mesh = &self.mesh;
         self.lids.pull(drive, |i, target, stiffness| {
-            let speed = stiffness * kick.step * kick.keep * light[i];
+            let speed = stiffness * kick.step * kick.keep * mesh.light(i);
             velocity[i] += (target - place[i]) * speed;
         });
         if drive.volume > 0.0 {
@@ -212,7 +209,7 @@ impl Springs {
             let push = -VOLUME * drive.volume * excess * kick.step * kick.keep;
             for (&i, &g) in cheek.nodes.iter().zip(at) {
                 let i = i as usize;
-                self.nodes.velocity[i] += self.gradient[g as usize] * (push * self.light[i]);
+                self.nodes.velocity[i] += self.gradient[g as usize] * (push * self.mesh.light(i));
             }
         }
     }

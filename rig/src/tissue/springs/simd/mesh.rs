@@ -288,6 +288,11 @@ impl Mesh {
             .map(|_| block.gradients as usize + node % BLOCK)
     }
 
+    /// 1 over a node's mass.
+    pub(in crate::tissue::springs) fn light(&self, node: usize) -> f32 {
+        self.blocks[node / BLOCK].light[node % BLOCK]
+    }
+
     /// Tells of every node what holds it, as it is laid out: for sums that need no haste.
     pub(in crate::tissue::springs) fn each_node(&self, mut tell: impl FnMut(usize, &Laid<'_>)) {
         for (b, block) in self.blocks.iter().enumerate() {
