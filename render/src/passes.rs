@@ -28,7 +28,7 @@ impl Renderer {
             Shown::Anatomy => {
                 pass.set_pipeline(self.pipelines.get(Draw::PartShadow));
                 for (_, buffers) in self.parts.iter().filter(|(m, _)| under_skin(*m)) {
-                    draw_part(&mut pass, buffers, 1);
+                    draw_part(&mut pass, buffers);
                 }
             }
         }
@@ -137,24 +137,24 @@ impl Renderer {
         material: Material,
         buffers: &PartBuffers,
     ) {
-        let (draw, maps, instances) = match material {
-            Material::Hair => (Draw::Hair, Some(&self.maps.hair), 1),
-            Material::Eye => (Draw::Eye, Some(&self.maps.eye), 1),
-            Material::Teeth => (Draw::Teeth, None, 1),
-            Material::Bone => (Draw::Bone, None, 1),
-            Material::Muscle => (Draw::Muscle, None, 1),
-            Material::Spring => (Draw::Spring, None, 1),
-            Material::Gums => (Draw::Gums, None, 1),
-            Material::Tongue => (Draw::Tongue, None, 1),
-            Material::Cavity => (Draw::Cavity, None, 1),
-            Material::Lash => (Draw::Lash, None, 1),
-            Material::Cloth | Material::Skin => (Draw::Cloth, None, 1),
+        let (draw, maps) = match material {
+            Material::Hair => (Draw::Hair, Some(&self.maps.hair)),
+            Material::Eye => (Draw::Eye, Some(&self.maps.eye)),
+            Material::Teeth => (Draw::Teeth, None),
+            Material::Bone => (Draw::Bone, None),
+            Material::Muscle => (Draw::Muscle, None),
+            Material::Spring => (Draw::Spring, None),
+            Material::Gums => (Draw::Gums, None),
+            Material::Tongue => (Draw::Tongue, None),
+            Material::Cavity => (Draw::Cavity, None),
+            Material::Lash => (Draw::Lash, None),
+            Material::Cloth | Material::Skin => (Draw::Cloth, None),
         };
         pass.set_pipeline(self.pipelines.get(draw));
         if let Some(maps) = maps {
             pass.set_bind_group(2, maps, &[]);
         }
-        draw_part(pass, buffers, instances);
+        draw_part(pass, buffers);
     }
 }
 
@@ -192,10 +192,10 @@ fn under_skin(material: Material) -> bool {
     )
 }
 
-fn draw_part(pass: &mut wgpu::RenderPass<'_>, buffers: &PartBuffers, instances: u32) {
+fn draw_part(pass: &mut wgpu::RenderPass<'_>, buffers: &PartBuffers) {
     pass.set_vertex_buffer(0, buffers.vertices.slice(..));
     pass.set_index_buffer(buffers.indices.slice(..), wgpu::IndexFormat::Uint32);
-    pass.draw_indexed(0..buffers.count, 0, 0..instances);
+    pass.draw_indexed(0..buffers.count, 0, 0..1);
 }
 
 fn clear_depth(

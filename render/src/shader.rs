@@ -32,6 +32,7 @@ const FILES: &[(&str, &str)] = &[
         "skin_blinn_phong",
         include_str!("shaders/skin_blinn_phong.wgsl"),
     ),
+    ("skin_maps", include_str!("shaders/skin_maps.wgsl")),
     ("skin_surface", include_str!("shaders/skin_surface.wgsl")),
     ("spring", include_str!("shaders/spring.wgsl")),
     ("teeth", include_str!("shaders/teeth.wgsl")),

@@ -3,6 +3,7 @@
 
 use assert_no_alloc::{AllocDisabler, assert_no_alloc};
 use mouthpiece_rig::{Control, Head};
+use mouthpiece_tests::or_skipped;
 
 use crate::{Gpu, Offscreen, Tier, View};
 
@@ -11,12 +12,8 @@ static ALLOCATOR: AllocDisabler = AllocDisabler;
 
 #[test]
 fn a_picture_of_many_makes_nothing_new() {
-    let gpu = match Gpu::headless() {
-        Ok(gpu) => gpu,
-        Err(error) => {
-            println!("skipped: {error}");
-            return;
-        }
+    let Some(gpu) = or_skipped(Gpu::headless()) else {
+        return;
     };
     let head = Head::reference().unwrap();
     let (size, view) = ((160, 120), View::default());

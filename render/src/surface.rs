@@ -2,7 +2,7 @@
 //! vertex and index buffers, and its points and normals of each frame.
 
 use glam::Vec3;
-use mouthpiece_rig::{Detail, Head, Material, Subdivision, SubdivisionError};
+use mouthpiece_rig::{Detail, Head, Subdivision, SubdivisionError};
 
 use crate::folds::Folds;
 use crate::gpu_data::{SkinMoving, SkinStill, unorm};
@@ -163,8 +163,7 @@ fn inside_indices(head: &Head) -> Vec<u32> {
 
 /// Which skin vertices lie deep under hair: triangles of them need not be drawn.
 fn under_hair(head: &Head) -> Vec<bool> {
-    let has_hair = head.parts.iter().any(|p| p.material == Material::Hair);
-    let hairline = if has_hair { Hairline::of(head) } else { None };
+    let hairline = Hairline::shown(head);
     let depth = |uv: &glam::Vec2| hairline.as_ref().map_or(0.0, |h| h.depth_mm(*uv));
     head.skin
         .mesh

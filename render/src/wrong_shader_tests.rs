@@ -2,6 +2,7 @@
 //! are judged by.
 
 use mouthpiece_rig::Head;
+use mouthpiece_tests::or_skipped;
 use mouthpiece_tests::picture::Picture;
 
 use crate::{Gpu, Offscreen, Tier, View};
@@ -22,12 +23,8 @@ const WRONG: [[&str; 3]; 3] = [
 
 #[test]
 fn a_wrong_shader_is_seen() {
-    let gpu = match Gpu::headless() {
-        Ok(gpu) => gpu,
-        Err(error) => {
-            println!("skipped: {error}");
-            return;
-        }
+    let Some(gpu) = or_skipped(Gpu::headless()) else {
+        return;
     };
     let head = Head::reference().unwrap();
     let mut offscreen = Offscreen::new(&gpu, &head, SIZE, Tier::Medium).unwrap();

@@ -13,6 +13,7 @@ use mouthpiece_render::{
     Background, Gpu, Offscreen, Picture, Renderer, Shown, SkinModel, Tier, View,
 };
 use mouthpiece_rig::{Anatomy, Control, Head, undressed};
+use mouthpiece_tests::or_skipped;
 
 /// What wgpu, naga and the drivers behind them complain of.
 struct Complaints(Mutex<Vec<String>>);
@@ -37,9 +38,8 @@ static COMPLAINTS: Complaints = Complaints(Mutex::new(Vec::new()));
 fn validation_has_nothing_to_say_of_anything_that_is_drawn() {
     log::set_logger(&COMPLAINTS).unwrap();
     log::set_max_level(LevelFilter::Warn);
-    let gpu = match Gpu::headless() {
-        Ok(gpu) => gpu,
-        Err(error) => return println!("skipped: {error}"),
+    let Some(gpu) = or_skipped(Gpu::headless()) else {
+        return;
     };
     let head = Head::reference().unwrap();
     let mut open = head.rest_frame();

@@ -7,18 +7,9 @@ use std::sync::Arc;
 use glam::{Vec3, vec3};
 use mouthpiece_render::{Camera, Extent, Gpu, Offscreen, Tier, View};
 use mouthpiece_rig::{Body, Control, Controls, Head, KeyFrame, STEP_TICKS, Simulation, TICK_RATE};
+use mouthpiece_tests::or_skipped;
 
 const SIZE: (u32, u32) = (640, 640);
-
-fn gpu() -> Option<Gpu> {
-    match Gpu::headless() {
-        Ok(gpu) => Some(gpu),
-        Err(error) => {
-            println!("skipped: {error}");
-            None
-        }
-    }
-}
 
 /// The head after a third of a second of holding.
 fn held(head: &Arc<Head>, pulls: &[(Control, f32)]) -> KeyFrame {
@@ -55,7 +46,9 @@ fn around(pixels: &[u8], extent: &Extent, place: Vec3, reach: i32) -> Vec<i32> {
 
 #[test]
 fn a_catch_light_stands_beside_a_dark_pupil_wherever_the_eyes_look() {
-    let Some(gpu) = gpu() else { return };
+    let Some(gpu) = or_skipped(Gpu::headless()) else {
+        return;
+    };
     let head = Arc::new(Head::reference().unwrap());
     let extent = Extent::of(&head);
     let mut offscreen = Offscreen::new(&gpu, &head, SIZE, Tier::Medium).unwrap();
@@ -87,7 +80,9 @@ fn a_catch_light_stands_beside_a_dark_pupil_wherever_the_eyes_look() {
 
 #[test]
 fn teeth_are_darker_behind_a_small_opening_than_behind_a_large_one() {
-    let Some(gpu) = gpu() else { return };
+    let Some(gpu) = or_skipped(Gpu::headless()) else {
+        return;
+    };
     let head = Arc::new(Head::reference().unwrap());
     let extent = Extent::of(&head);
     let mut offscreen = Offscreen::new(&gpu, &head, SIZE, Tier::Medium).unwrap();

@@ -4,20 +4,11 @@
 
 use mouthpiece_render::{Background, Camera, Gpu, Offscreen, Tier, View};
 use mouthpiece_rig::{Control, Head};
+use mouthpiece_tests::or_skipped;
 
 const SIDE: u32 = 480;
 /// Far from every colour of a head.
 const BEHIND: [u8; 3] = [20, 60, 230];
-
-fn gpu() -> Option<Gpu> {
-    match Gpu::headless() {
-        Ok(gpu) => Some(gpu),
-        Err(error) => {
-            println!("skipped: {error}");
-            None
-        }
-    }
-}
 
 fn view(camera: Camera) -> View {
     View {
@@ -57,7 +48,9 @@ fn difference(a: &[u8], b: &[u8]) -> (f32, f32) {
 
 #[test]
 fn hair_does_not_flicker_when_the_head_turns_by_less_than_a_pixel() {
-    let Some(gpu) = gpu() else { return };
+    let Some(gpu) = or_skipped(Gpu::headless()) else {
+        return;
+    };
     let head = Head::reference().unwrap();
     for tier in [Tier::Medium, Tier::High] {
         for camera in [Camera::Front, Camera::ThreeQuarter] {
@@ -96,7 +89,9 @@ fn hair_mean(pixels: &[u8], side: usize) -> [f32; 3] {
 
 #[test]
 fn hair_is_as_dense_and_as_bright_from_far_as_from_near() {
-    let Some(gpu) = gpu() else { return };
+    let Some(gpu) = or_skipped(Gpu::headless()) else {
+        return;
+    };
     let head = Head::reference().unwrap();
     for tier in Tier::ALL {
         let means = [160_u32, 320, 640, 960].map(|side| {

@@ -8,16 +8,7 @@ use mouthpiece_render::{
 };
 use mouthpiece_rig::lip_level::CONTACT;
 use mouthpiece_rig::{Control, Head, KeyFrame, Material};
-
-fn gpu() -> Option<Gpu> {
-    match Gpu::headless() {
-        Ok(gpu) => Some(gpu),
-        Err(error) => {
-            println!("skipped: {error}");
-            None
-        }
-    }
-}
+use mouthpiece_tests::or_skipped;
 
 fn head() -> Head {
     match Head::reference() {
@@ -45,7 +36,9 @@ fn pixel(pixels: &[u8], width: u32, x: u32, y: u32) -> [i32; 3] {
 
 #[test]
 fn a_picture_shows_skin_before_a_backdrop_and_is_opaque() {
-    let Some(gpu) = gpu() else { return };
+    let Some(gpu) = or_skipped(Gpu::headless()) else {
+        return;
+    };
     let head = head();
     let mut offscreen = Offscreen::new(&gpu, &head, (320, 240), Tier::Low).unwrap();
     let view = View {
@@ -73,7 +66,9 @@ fn a_picture_shows_skin_before_a_backdrop_and_is_opaque() {
 
 #[test]
 fn the_same_frame_gives_the_same_bytes() {
-    let Some(gpu) = gpu() else { return };
+    let Some(gpu) = or_skipped(Gpu::headless()) else {
+        return;
+    };
     let head = head();
     let frame = with_mouth_open(&head, 6.0);
     let view = View::default();
@@ -97,7 +92,9 @@ fn the_same_frame_gives_the_same_bytes() {
 
 #[test]
 fn a_batch_gives_its_pictures_in_order() {
-    let Some(gpu) = gpu() else { return };
+    let Some(gpu) = or_skipped(Gpu::headless()) else {
+        return;
+    };
     let head = head();
     let mut offscreen = Offscreen::new(&gpu, &head, (96, 72), Tier::Low).unwrap();
     let frames: Vec<KeyFrame> = (0..5_u8)
@@ -131,7 +128,9 @@ fn a_batch_gives_its_pictures_in_order() {
 
 #[test]
 fn more_pictures_than_buffers_and_wrong_heads_and_sizes_are_errors() {
-    let Some(gpu) = gpu() else { return };
+    let Some(gpu) = or_skipped(Gpu::headless()) else {
+        return;
+    };
     let head = head();
     let mut offscreen = Offscreen::new(&gpu, &head, (64, 48), Tier::Low).unwrap();
     let frame = head.rest_frame();
@@ -169,7 +168,9 @@ fn more_pictures_than_buffers_and_wrong_heads_and_sizes_are_errors() {
 
 #[test]
 fn odd_sizes_are_drawn() {
-    let Some(gpu) = gpu() else { return };
+    let Some(gpu) = or_skipped(Gpu::headless()) else {
+        return;
+    };
     let head = head();
     for size in [(1, 1), (333, 77), (77, 333), (2, 500)] {
         let mut offscreen = Offscreen::new(&gpu, &head, size, Tier::Medium).unwrap();
@@ -186,7 +187,9 @@ fn odd_sizes_are_drawn() {
 
 #[test]
 fn a_broken_key_frame_does_not_take_the_renderer_with_it() {
-    let Some(gpu) = gpu() else { return };
+    let Some(gpu) = or_skipped(Gpu::headless()) else {
+        return;
+    };
     let head = head();
     let mut offscreen = Offscreen::new(&gpu, &head, (64, 48), Tier::Low).unwrap();
     let good = offscreen
@@ -209,7 +212,9 @@ fn a_broken_key_frame_does_not_take_the_renderer_with_it() {
 
 #[test]
 fn the_flash_is_a_white_square_in_the_upper_left_corner_and_nowhere_else() {
-    let Some(gpu) = gpu() else { return };
+    let Some(gpu) = or_skipped(Gpu::headless()) else {
+        return;
+    };
     let head = head();
     let mut offscreen = Offscreen::new(&gpu, &head, (320, 240), Tier::Medium).unwrap();
     let dark = offscreen
@@ -238,7 +243,9 @@ fn the_flash_is_a_white_square_in_the_upper_left_corner_and_nowhere_else() {
 /// HABER 4.1: teeth and tongue darken as the mouth closes.
 #[test]
 fn the_inside_of_the_mouth_is_darker_the_less_it_is_open() {
-    let Some(gpu) = gpu() else { return };
+    let Some(gpu) = or_skipped(Gpu::headless()) else {
+        return;
+    };
     let head = head();
     let size = (400, 400);
     let mut offscreen = Offscreen::new(&gpu, &head, size, Tier::Low).unwrap();

@@ -3,17 +3,12 @@
 
 use mouthpiece_render::{Camera, Extent, Gpu, Offscreen, SkinModel, Tier, View};
 use mouthpiece_rig::{Control, Head, KeyFrame, Layer};
+use mouthpiece_tests::or_skipped;
 
 const SIZE: (u32, u32) = (480, 480);
 
 fn ready() -> Option<(Head, Offscreen)> {
-    let gpu = match Gpu::headless() {
-        Ok(gpu) => gpu,
-        Err(error) => {
-            println!("skipped: {error}");
-            return None;
-        }
-    };
+    let gpu = or_skipped(Gpu::headless())?;
     let ready = || -> Result<_, Box<dyn std::error::Error>> {
         let head = Head::reference()?;
         let offscreen = Offscreen::new(&gpu, &head, SIZE, Tier::Medium)?;
@@ -32,6 +27,14 @@ fn pulled(head: &Head, pulls: &[(Control, f32)]) -> KeyFrame {
         frame.state[*control] = *value;
     }
     frame
+}
+
+/// The picture of a frame from the front.
+fn drawn(offscreen: &mut Offscreen, frame: &KeyFrame) -> Vec<u8> {
+    match offscreen.render(frame, &View::default()) {
+        Ok(pixels) => pixels.to_vec(),
+        Err(error) => panic!("the head cannot be drawn: {error}"),
+    }
 }
 
 /// Mean difference of two pictures, of 255, within some pixels of a landmark moved by mm.
@@ -67,11 +70,7 @@ fn a_raised_brow_wrinkles_its_side_of_the_forehead() {
     let Some((head, mut offscreen)) = ready() else {
         return;
     };
-    let view = View::default();
-    let rest = offscreen
-        .render(&head.rest_frame(), &view)
-        .unwrap()
-        .to_vec();
+    let rest = drawn(&mut offscreen, &head.rest_frame());
     let raised = pulled(
         &head,
         &[
@@ -79,13 +78,13 @@ fn a_raised_brow_wrinkles_its_side_of_the_forehead() {
             (Control::FrontalisOuterSide, 0.5),
         ],
     );
-    let raised = offscreen.render(&raised, &view).unwrap();
+    let raised = drawn(&mut offscreen, &raised);
     // Above the middle of either brow.
-    let above = |name| change(&head, &rest, raised, name, glam::vec3(0.0, 24.0, 0.0));
+    let above = |name| change(&head, &rest, &raised, name, glam::vec3(0.0, 24.0, 0.0));
     let (left, right) = (above("ps_l"), above("ps_r"));
     assert!(left > 0.7, "the left forehead changes by {left}");
     assert!(right < 0.3, "the right forehead changes by {right}");
-    let chin = change(&head, &rest, raised, "pg", glam::Vec3::ZERO);
+    let chin = change(&head, &rest, &raised, "pg", glam::Vec3::ZERO);
     assert!(chin < 0.05, "the chin changes by {chin}");
 }
 
@@ -94,16 +93,12 @@ fn a_frown_wrinkles_between_the_brows() {
     let Some((head, mut offscreen)) = ready() else {
         return;
     };
-    let view = View::default();
-    let rest = offscreen
-        .render(&head.rest_frame(), &view)
-        .unwrap()
-        .to_vec();
+    let rest = drawn(&mut offscreen, &head.rest_frame());
     let frown = pulled(&head, &[(Control::CorrugatorSupercilii, 1.0)]);
-    let frown = offscreen.render(&frown, &view).unwrap();
-    let between = change(&head, &rest, frown, "g", glam::Vec3::ZERO);
+    let frown = drawn(&mut offscreen, &frown);
+    let between = change(&head, &rest, &frown, "g", glam::Vec3::ZERO);
     assert!(between > 1.5, "{between}");
-    let cheek = change(&head, &rest, frown, "ch_l", glam::vec3(14.0, 22.0, 0.0));
+    let cheek = change(&head, &rest, &frown, "ch_l", glam::vec3(14.0, 22.0, 0.0));
     assert!(cheek < 0.05, "the cheek changes by {cheek}");
 }
 
@@ -113,7 +108,7 @@ fn the_papers_model_draws_the_same_face_by_another_light() {
         return;
     };
     let frame = head.rest_frame();
-    let physical = offscreen.render(&frame, &View::default()).unwrap().to_vec();
+    let physical = drawn(&mut offscreen, &frame);
     let view = View {
         skin: SkinModel::BlinnPhong,
         ..View::default()

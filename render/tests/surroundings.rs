@@ -11,13 +11,8 @@ use std::sync::Arc;
 use glam::Vec3;
 use mouthpiece_render::{Background, Environment, Extent, Gpu, Offscreen, Picture, Tier, View};
 use mouthpiece_rig::{Head, Material};
+use mouthpiece_tests::or_skipped;
 use proptest::prelude::*;
-
-fn gpu() -> Option<Gpu> {
-    Gpu::headless()
-        .map_err(|error| println!("skipped: {error}"))
-        .ok()
-}
 
 fn head() -> Head {
     Head::reference().unwrap()
@@ -38,7 +33,9 @@ fn at(pixels: &[u8], width: u32, x: u32, y: u32) -> [u8; 4] {
 
 #[test]
 fn a_gradient_runs_from_its_first_colour_above_to_its_second_below() {
-    let Some(gpu) = gpu() else { return };
+    let Some(gpu) = or_skipped(Gpu::headless()) else {
+        return;
+    };
     let head = head();
     let mut offscreen = Offscreen::new(&gpu, &head, (160, 120), Tier::Low).unwrap();
     let (top, bottom) = ([250, 20, 10], [10, 40, 200]);
@@ -58,7 +55,9 @@ fn a_gradient_runs_from_its_first_colour_above_to_its_second_below() {
 
 #[test]
 fn a_picture_fills_the_frame_from_its_middle_and_keeps_its_colours() {
-    let Some(gpu) = gpu() else { return };
+    let Some(gpu) = or_skipped(Gpu::headless()) else {
+        return;
+    };
     let head = head();
     // Three times as wide as high: of it a square frame shows the middle third.
     let stripes = [[255, 0, 0, 255], [9, 130, 201, 255], [0, 0, 255, 255]];
@@ -95,7 +94,9 @@ fn a_picture_fills_the_frame_from_its_middle_and_keeps_its_colours() {
 /// What stands before nothing, laid over a colour, is the picture drawn before that colour.
 #[test]
 fn straight_alpha_laid_over_a_colour_gives_the_picture_before_that_colour() {
-    let Some(gpu) = gpu() else { return };
+    let Some(gpu) = or_skipped(Gpu::headless()) else {
+        return;
+    };
     let head = head();
     for tier in [Tier::Low, Tier::Medium] {
         let mut offscreen = Offscreen::new(&gpu, &head, (240, 240), tier).unwrap();
@@ -136,7 +137,9 @@ fn straight_alpha_laid_over_a_colour_gives_the_picture_before_that_colour() {
 /// Red light from the face's right only: that cheek is redder than the other.
 #[test]
 fn a_panorama_colours_the_face_from_its_side() {
-    let Some(gpu) = gpu() else { return };
+    let Some(gpu) = or_skipped(Gpu::headless()) else {
+        return;
+    };
     let head = head();
     let path = std::env::temp_dir().join(format!("mouthpiece-side-{}.hdr", std::process::id()));
     let red = image::Rgb32FImage::from_fn(64, 32, |x, _| {
@@ -169,7 +172,9 @@ fn a_panorama_colours_the_face_from_its_side() {
 
 #[test]
 fn a_lost_device_costs_a_pause_and_no_picture() {
-    let Some(gpu) = gpu() else { return };
+    let Some(gpu) = or_skipped(Gpu::headless()) else {
+        return;
+    };
     let head = head();
     let mut offscreen = Offscreen::new(&gpu, &head, (96, 72), Tier::Low).unwrap();
     let view = View::default();

@@ -27,3 +27,8 @@ pub mod fixtures;
 pub mod mp4;
 pub mod picture;
 pub mod wav;
+
+/// What a test needs of this machine; where it is not there, says why the test is skipped.
+pub fn or_skipped<T>(found: Result<T, impl std::fmt::Display>) -> Option<T> {
+    found.map_err(|why| println!("skipped: {why}")).ok()
+}

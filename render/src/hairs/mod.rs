@@ -8,7 +8,7 @@ mod fine;
 
 use fine::{grow_fine, roots, single};
 use glam::{Vec2, Vec3, vec2};
-use mouthpiece_rig::{Head, Material, Mesh, Part};
+use mouthpiece_rig::{Head, Mesh, Part};
 
 use crate::maps::hair::{COLUMNS, DENSE, LOOSE};
 use crate::maps::hairline::Hairline;
@@ -193,9 +193,7 @@ fn lightened(occlusion: f32) -> f32 {
 /// The occlusion of each skin vertex, with what the hair before it takes away.
 pub(crate) fn shaded_skin(head: &Head) -> Vec<f32> {
     let mesh = &head.skin.mesh;
-    let has_hair = head.parts.iter().any(|p| p.material == Material::Hair);
-    let hairline = if has_hair { Hairline::of(head) } else { None };
-    let Some(hairline) = hairline else {
+    let Some(hairline) = Hairline::shown(head) else {
         return mesh.occlusion.clone();
     };
     let shade = |uv: &Vec2| {
@@ -248,6 +246,7 @@ fn keep_cap(out: &mut Mesh, mesh: &Mesh, head: &Head, hairline: Option<&Hairline
 mod tests {
     use super::*;
     use glam::vec3;
+    use mouthpiece_rig::Material;
 
     fn hair(head: &Head) -> &Part {
         let mut parts = head.parts.iter();

@@ -1,7 +1,7 @@
 //! How deep under hair a place of the skin lies, by the features `hairline_*`: what lies deep is not drawn.
 
 use glam::{Vec2, vec2};
-use mouthpiece_rig::Head;
+use mouthpiece_rig::{Head, Material};
 
 use super::CHART_MM;
 
@@ -14,6 +14,14 @@ pub(crate) struct Hairline {
 }
 
 impl Hairline {
+    /// None where the head has no hair or no such lines.
+    pub(crate) fn shown(head: &Head) -> Option<Self> {
+        let mut parts = head.parts.iter();
+        parts
+            .any(|part| part.material == Material::Hair)
+            .then(|| Self::of(head))?
+    }
+
     /// None where the head has no such lines.
     pub(crate) fn of(head: &Head) -> Option<Self> {
         let side = |name, hand| Some((line(head, name)?, hand));

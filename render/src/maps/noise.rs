@@ -25,11 +25,17 @@ fn below(x: f32) -> i32 {
 /// Smooth noise over a lattice of side 1, 0..1.
 pub(crate) fn value(x: f32, y: f32, seed: u32) -> f32 {
     let (xi, yi) = (below(x), below(y));
-    let smooth = |t: f32| t * t * (3.0 - 2.0 * t);
-    let (u, v) = (smooth(x - xi as f32), smooth(y - yi as f32));
     let at = |dx: i32, dy: i32| unit(hash(xi + dx, yi + dy, seed));
-    let low = at(0, 0) + (at(1, 0) - at(0, 0)) * u;
-    let high = at(0, 1) + (at(1, 1) - at(0, 1)) * u;
+    let corners = [at(0, 0), at(1, 0), at(0, 1), at(1, 1)];
+    between(corners, x - xi as f32, y - yi as f32)
+}
+
+/// The corners of a cell (those of the first row, then of the second) blended smoothly.
+#[inline]
+fn between([a, b, c, d]: [f32; 4], x: f32, y: f32) -> f32 {
+    let smooth = |t: f32| t * t * (3.0 - 2.0 * t);
+    let (u, v) = (smooth(x), smooth(y));
+    let (low, high) = (a + (b - a) * u, c + (d - c) * u);
     low + (high - low) * v
 }
 
@@ -63,14 +69,14 @@ impl Tiled {
         let last = self.cells - 1;
         let (x, y) = ((x * scale).max(0.0), (y * scale).max(0.0));
         let (xi, yi) = ((x as usize).min(last), (y as usize).min(last));
-        let smooth = |t: f32| t * t * (3.0 - 2.0 * t);
-        let (u, v) = (smooth(x - xi as f32), smooth(y - yi as f32));
         let next = |i: usize| if i == last { 0 } else { i + 1 };
         let (above, below) = (yi * self.cells, next(yi) * self.cells);
-        let (right, values) = (next(xi), &self.values);
-        let low = values[above + xi] + (values[above + right] - values[above + xi]) * u;
-        let high = values[below + xi] + (values[below + right] - values[below + xi]) * u;
-        low + (high - low) * v
+        let corners = [above + xi, above + next(xi), below + xi, below + next(xi)];
+        between(
+            corners.map(|i| self.values[i]),
+            x - xi as f32,
+            y - yi as f32,
+        )
     }
 }
 

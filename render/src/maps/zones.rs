@@ -53,25 +53,17 @@ pub(crate) fn zones_at(p: Vec3, m: &Landmarks) -> [Zones; 2] {
 
 /// How far the zones are wrinkled, 0..1: the first layer's on the left and right, the second's.
 pub(crate) fn wrinkled(controls: &Controls) -> [Zones; 4] {
-    let left = sided(controls, 1.0);
-    let right = sided(controls, -1.0);
+    let left = sided(controls, true);
+    let right = sided(controls, false);
     [left[0], right[0], left[1], right[1]]
 }
 
 /// Wrinkles that a face keeps at rest, in a young one little.
 const AT_REST: [Zones; 2] = [[0.05, 0.04, 0.14, 0.10], [0.06, 0.06, 0.03, 0.05]];
 
-fn sided(controls: &Controls, hand: f32) -> [Zones; 2] {
-    let pull = |muscle: Muscle| {
-        let uneven = Control::side(muscle).map_or(0.0, |side| controls[side]);
-        (controls[Control::contraction(muscle)] + hand * uneven).clamp(0.0, 1.0)
-    };
-    let lid = controls[if hand > 0.0 {
-        Control::LidL
-    } else {
-        Control::LidR
-    }]
-    .clamp(0.0, 1.0);
+fn sided(controls: &Controls, left: bool) -> [Zones; 2] {
+    let pull = |muscle: Muscle| controls.contraction(muscle, left);
+    let lid = controls[if left { Control::LidL } else { Control::LidR }].clamp(0.0, 1.0);
     let pursed =
         0.5 * (pull(Muscle::OrbicularisOrisSuperior) + pull(Muscle::OrbicularisOrisInferior));
     let smiling = 0.75 * pull(Muscle::ZygomaticusMajor)

@@ -2,13 +2,7 @@
 // mask, two bumps), Blinn and Phong's model under two lamps, no shadow; nothing that a picture is made with.
 
 #include "frame"
-
-@group(2) @binding(0) var map_sampler: sampler;
-@group(2) @binding(1) var colour_map: texture_2d<f32>;
-@group(2) @binding(2) var mask_map: texture_2d<f32>;
-@group(2) @binding(3) var wrinkle_map: texture_2d<f32>;
-@group(2) @binding(4) var grain_map: texture_2d<f32>;
-@group(2) @binding(5) var tile_sampler: sampler;
+#include "skin_maps"
 
 struct SkinVertex {
     @location(0) position: vec3<f32>,
