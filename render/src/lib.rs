@@ -17,6 +17,7 @@
 #![forbid(unsafe_code)]
 
 mod bindings;
+mod brows;
 mod environment;
 mod error;
 mod folds;

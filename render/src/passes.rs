@@ -109,6 +109,13 @@ impl Renderer {
             SkinModel::BlinnPhong => Draw::SkinBlinnPhong,
         };
         self.draw_skin(pass, model, &self.skin_indices);
+        if let Some(brows) = &self.brow_buffers {
+            pass.set_pipeline(self.pipelines.get(Draw::Brow));
+            pass.set_vertex_buffer(0, brows.moving.slice(..));
+            pass.set_vertex_buffer(1, brows.still.slice(..));
+            pass.set_index_buffer(brows.indices.slice(..), wgpu::IndexFormat::Uint32);
+            pass.draw_indexed(0..self.brows.indices.len() as u32, 0, 0..1);
+        }
         let drawn = |m: Material| {
             !matches!(
                 m,

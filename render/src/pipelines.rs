@@ -3,6 +3,7 @@
 
 use std::sync::OnceLock;
 
+use crate::brows;
 use crate::gpu_data;
 use crate::layouts::Layouts;
 use crate::recipes::{Draw, Mesh, Recipe};
@@ -130,6 +131,7 @@ fn pipeline(
     };
     let shadow = recipe.fragment.is_none();
     let part = [Some(gpu_data::PART)];
+    let brow = [Some(brows::BROW_MOVING), Some(brows::BROW_STILL)];
     let skin = [Some(gpu_data::SKIN_MOVING), Some(gpu_data::SKIN_STILL)];
     let targets = [Some(wgpu::ColorTargetState {
         format,
@@ -151,6 +153,7 @@ fn pipeline(
             buffers: match recipe.mesh {
                 Mesh::Skin => &skin,
                 Mesh::Part => &part,
+                Mesh::Brow => &brow,
                 Mesh::None => &[],
             },
         },

@@ -5,6 +5,7 @@
 pub(crate) enum Mesh {
     Skin,
     Part,
+    Brow,
     None,
 }
 
@@ -58,6 +59,13 @@ const LASH: Recipe = Recipe {
     cull: None,
     strands: true,
     ..solid("lash")
+};
+const BROW: Recipe = Recipe {
+    vertex: "brow_vertex",
+    mesh: Mesh::Brow,
+    cull: None,
+    strands: true,
+    ..solid("brow")
 };
 const CAVITY: Recipe = Recipe {
     cull: None,
@@ -153,6 +161,7 @@ pub(crate) enum Draw {
     Tongue,
     Cavity,
     Lash,
+    Brow,
     Cloth,
     Inside,
     SkinShadow,
@@ -177,6 +186,8 @@ impl Draw {
         Self::SkinShadow,
         Self::Backdrop,
     ];
+    /// What it shows besides where a pixel has several samples.
+    pub(crate) const FINE: [Self; 1] = [Self::Brow];
     /// What an open mouth shows besides. The others are made when they are first asked for.
     pub(crate) const MOUTH: [Self; 5] = [
         Self::Teeth,
@@ -208,6 +219,7 @@ impl Draw {
             Self::Tongue => (solid("tongue"), Groups::Lit),
             Self::Cavity => (CAVITY, Groups::Lit),
             Self::Lash => (LASH, Groups::Lit),
+            Self::Brow => (BROW, Groups::Lit),
             Self::Cloth => (CLOTH, Groups::Lit),
             Self::Bone => (BONE, Groups::Lit),
             Self::Muscle => (MUSCLE, Groups::Lit),

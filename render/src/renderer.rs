@@ -6,6 +6,7 @@ use std::time::Instant;
 use mouthpiece_rig::{Head, KeyFrame, Material, Skin};
 
 use crate::bindings::{self, MapGroups};
+use crate::brows::{BrowMoving, Brows};
 use crate::error::RenderError;
 use crate::frame;
 use crate::geometry::PartGeometry;
@@ -33,6 +34,27 @@ pub(crate) struct PartBuffers {
     pub(crate) count: u32,
 }
 
+/// Buffers of the brows' hairs.
+#[derive(Debug)]
+pub(crate) struct BrowBuffers {
+    pub(crate) moving: wgpu::Buffer,
+    pub(crate) still: wgpu::Buffer,
+    pub(crate) indices: wgpu::Buffer,
+}
+
+impl BrowBuffers {
+    fn of(gpu: &Gpu, brows: &Brows) -> Self {
+        let vertex = wgpu::BufferUsages::VERTEX;
+        let moving = vertex | wgpu::BufferUsages::COPY_DST;
+        let index = wgpu::BufferUsages::INDEX;
+        Self {
+            moving: upload::buffer(gpu, "brows, moving", &brows.moving, moving),
+            still: upload::buffer(gpu, "brows, still", &brows.still, vertex),
+            indices: upload::buffer(gpu, "brows", &brows.indices, index),
+        }
+    }
+}
+
 /// The head on the card, ready to be drawn in one target format.
 #[derive(Debug)]
 pub struct Renderer {
@@ -48,6 +70,9 @@ pub struct Renderer {
     pub(crate) skin_indices: wgpu::Buffer,
     pub(crate) inside_indices: wgpu::Buffer,
     pub(crate) parts: Vec<(Material, PartBuffers)>,
+    pub(crate) brows: Brows,
+    /// None where there are no hairs.
+    pub(crate) brow_buffers: Option<BrowBuffers>,
     pub(crate) pipelines: Pipelines,
     pub(crate) frame: wgpu::Buffer,
     pub(crate) frame_group: wgpu::BindGroup,
@@ -93,6 +118,9 @@ impl Renderer {
                 let target = (format, samples);
                 let warm_up = WarmUp::new(gpu, &layouts, &shadow_group, target, &detail);
                 warm_up.run(gpu, &pipelines, &Draw::FACE);
+                if samples > 1 {
+                    warm_up.run(gpu, &pipelines, &Draw::FINE);
+                }
                 warm_up
             };
             let beside = std::thread::Builder::new()
@@ -119,6 +147,13 @@ impl Renderer {
         let skin_still = upload::buffer(gpu, "skin, still", &skin.still, vertex);
         let skin_indices = upload::buffer(gpu, "skin", &skin.indices, wgpu::BufferUsages::INDEX);
         let inside_indices = upload::buffer(gpu, "inside", &skin.inside, wgpu::BufferUsages::INDEX);
+        // Where a pixel is one sample hairs are too thin to be seen.
+        let brows = if samples > 1 {
+            Brows::of(head, &skin)
+        } else {
+            Brows::default()
+        };
+        let brow_buffers = (!brows.indices.is_empty()).then(|| BrowBuffers::of(gpu, &brows));
         let parts = DRAW_ORDER
             .into_iter()
             .filter_map(|material| {
@@ -167,6 +202,8 @@ impl Renderer {
             skin_indices,
             inside_indices,
             parts,
+            brows,
+            brow_buffers,
             pipelines,
             frame,
             frame_group,
@@ -229,6 +266,7 @@ impl Renderer {
         size: (u32, u32),
     ) -> (Frame, Open) {
         self.skin.set(&key_frame.skin);
+        self.brows.set(&self.skin);
         let open = self.openings.measure(self.skin.points());
         let frame = frame::data(&self.pose, &self.extent, &open, key_frame, view, size);
         (frame, open)
@@ -272,6 +310,10 @@ impl Renderer {
         let (frame, open) = self.prepare(key_frame, view, size);
         let moving = bytemuck::cast_slice::<SkinMoving, u8>(&self.skin.moving);
         gpu.queue().write_buffer(&self.skin_moving, 0, moving);
+        if let Some(buffers) = &self.brow_buffers {
+            let moving = bytemuck::cast_slice::<BrowMoving, u8>(&self.brows.moving);
+            gpu.queue().write_buffer(&buffers.moving, 0, moving);
+        }
         gpu.queue()
             .write_buffer(&self.frame, 0, bytemuck::bytes_of(&frame));
         if view.shown != Shown::Yardstick {

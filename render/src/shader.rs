@@ -11,6 +11,7 @@ const FILES: &[(&str, &str)] = &[
     ("anatomy", include_str!("shaders/anatomy.wgsl")),
     ("background", include_str!("shaders/background.wgsl")),
     ("bone", include_str!("shaders/bone.wgsl")),
+    ("brow", include_str!("shaders/brow.wgsl")),
     ("cavity", include_str!("shaders/cavity.wgsl")),
     ("cloth", include_str!("shaders/cloth.wgsl")),
     ("eye", include_str!("shaders/eye.wgsl")),
@@ -45,6 +46,7 @@ const FILES: &[(&str, &str)] = &[
 pub(crate) const ENTRY_FILES: &[&str] = &[
     "background",
     "bone",
+    "brow",
     "cavity",
     "cloth",
     "eye",

@@ -92,6 +92,11 @@ impl SkinGeometry {
         &self.points
     }
 
+    /// Their normals, of unit length.
+    pub(crate) fn normals(&self) -> &[Vec3] {
+        &self.normals
+    }
+
     /// Takes over the positions of the head's vertices. Allocates nothing.
     pub(crate) fn set(&mut self, positions: &[Vec3]) {
         debug_assert_eq!(positions.len(), self.control_count);

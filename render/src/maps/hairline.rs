@@ -53,7 +53,7 @@ impl Hairline {
 }
 
 /// The named feature in mm, from the middle of the face outwards; none where the head has it not.
-fn line(head: &Head, name: &str) -> Option<Vec<Vec2>> {
+pub(crate) fn line(head: &Head, name: &str) -> Option<Vec<Vec2>> {
     let mut points: Vec<Vec2> = head
         .feature(name)?
         .points
