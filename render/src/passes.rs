@@ -165,7 +165,8 @@ impl Renderer {
     }
 }
 
-/// Front to back as far as a head goes, so that what is hidden is not shaded. `Skin` is the head's
+/// Front to back as far as a head goes, so that what is hidden is not shaded; lashes may let show what is behind
+/// them. `Skin` is the head's
 /// own mesh: parts of that material do not occur.
 pub(crate) const DRAW_ORDER: [Material; 11] = [
     Material::Spring,
@@ -173,8 +174,8 @@ pub(crate) const DRAW_ORDER: [Material; 11] = [
     Material::Bone,
     Material::Hair,
     Material::Cloth,
-    Material::Lash,
     Material::Eye,
+    Material::Lash,
     Material::Teeth,
     Material::Gums,
     Material::Tongue,

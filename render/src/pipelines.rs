@@ -135,7 +135,7 @@ fn pipeline(
     let skin = [Some(gpu_data::SKIN_MOVING), Some(gpu_data::SKIN_STILL)];
     let targets = [Some(wgpu::ColorTargetState {
         format,
-        blend: None,
+        blend: (recipe.blended && samples == 1).then_some(wgpu::BlendState::ALPHA_BLENDING),
         // Strands write coverage to alpha; the picture's own alpha stays 1.
         write_mask: if recipe.strands {
             wgpu::ColorWrites::COLOR

@@ -20,6 +20,8 @@ pub(crate) struct Recipe {
     pub(crate) cull: Option<wgpu::Face>,
     /// Alpha says how many samples are covered.
     pub(crate) strands: bool,
+    /// Where a pixel has one sample only, alpha is how much of it is covered.
+    pub(crate) blended: bool,
     pub(crate) depth: wgpu::CompareFunction,
 }
 
@@ -31,6 +33,7 @@ const fn solid(file: &'static str) -> Recipe {
         mesh: Mesh::Part,
         cull: Some(wgpu::Face::Back),
         strands: false,
+        blended: false,
         depth: wgpu::CompareFunction::Less,
     }
 }
@@ -58,6 +61,7 @@ const LASH: Recipe = Recipe {
     vertex: "lash_vertex",
     cull: None,
     strands: true,
+    blended: true,
     ..solid("lash")
 };
 const BROW: Recipe = Recipe {

@@ -1,7 +1,7 @@
-// Lashes: nearly black blades, lit from both sides, with a fibre's highlight. Lit at their vertices. They turn with their
+// Lashes: dark blades, lit from both sides, with a fibre's highlight. Lit at their vertices. They turn with their
 // lid: uv.x is where the root lies over the eyeball, in its radii from its centre; uv.y runs from root (0) to tip (1), plus
 // 2 on the lower lid. A blade is never drawn narrower than a pixel: what it would lack in width it lacks in cover, so
-// that thin tips fade instead of breaking into dots.
+// that thin tips fade instead of breaking into dots. Where a pixel has one sample, cover is blended.
 
 #include "part"
 #include "light"
@@ -59,11 +59,13 @@ fn lash_vertex(in: PartVertex) -> LashFragment {
     let up = vec3(frame.clip_from_world[0].y, frame.clip_from_world[1].y, frame.clip_from_world[2].y);
     let pixel = 2.0 * distance / (length(up) * frame.picture.y);
     let fine = half * select(FINE_UPPER, FINE_LOWER, lower);
-    // One sample has no half tones: a blade that wide would be a bar.
-    let drawn = max(fine, pixel * select(0.5, 0.35, SAMPLES == 1u));
+    // One sample has no finer place: a wider band is smoother along the margin.
+    let drawn = max(fine, pixel * select(0.5, 0.7, SAMPLES == 1u));
 
-    // Brown where light gets through the thin tips.
-    let albedo = mix(vec3(0.010, 0.007, 0.006), vec3(0.040, 0.026, 0.019), tip);
+    // Brown where light gets through the thin tips, and all along below, where they are finer and catch the light.
+    let upper_albedo = mix(vec3(0.010, 0.007, 0.006), vec3(0.040, 0.026, 0.019), tip);
+    let lower_albedo = mix(vec3(0.036, 0.023, 0.016), vec3(0.105, 0.068, 0.048), tip);
+    let albedo = select(upper_albedo, lower_albedo, lower);
     let v = normalize(frame.eye.xyz - at.world);
     let h = normalize(frame.key_dir.xyz + v);
     // Along the lash, the other way on its other side; so is what lies across it as it is seen.
@@ -74,13 +76,17 @@ fn lash_vertex(in: PartVertex) -> LashFragment {
     let shine = 0.016 * exp2(-along * along * 20.0) * dot(frame.key_colour.rgb, vec3(0.3333));
     var out: LashFragment;
     out.clip = frame.clip_from_world * vec4(at.world + seen * drawn, 1.0);
+    let rounded = select((0.05 + 0.9 * chance) / f32(SAMPLES), 0.0, SAMPLES == 1u);
     out.light = vec4(albedo * (ambient_from(n) + 0.5 * frame.key_colour.rgb * abs(dot(n, frame.key_dir.xyz))) + shine,
-        fine / drawn + (0.05 + 0.9 * chance) / f32(SAMPLES));
+        fine / drawn + rounded);
     return out;
 }
 
 @fragment
 fn lash(in: LashFragment) -> @location(0) vec4<f32> {
+    if SAMPLES == 1u {
+        return vec4(developed(in.light.rgb).rgb, min(in.light.w, 1.0));
+    }
     let samples = f32(SAMPLES);
     let covered = min(floor(in.light.w * samples), samples);
     if covered < 0.5 {
