@@ -82,7 +82,10 @@ impl Bed {
         let from = (ahead + vec2(0.0, -rise)).normalize_or(ahead);
         let bent = rise * (0.25 + 0.15 * standing) - 0.12 - 0.2 * (bow - 0.5);
         let to = (ahead + vec2(0.0, -bent)).normalize_or(ahead);
-        let length = (5.0 + 4.0 * length) * (0.62 + 0.38 * dense) * (1.0 - 0.30 * standing);
+        let length = (5.0 + 4.0 * length)
+            * (0.62 + 0.38 * dense)
+            * (1.0 - 0.30 * standing)
+            * (0.6 + 0.4 * ramp(1.0, 0.8, along));
         let middle = root + from * (0.48 * length);
         let tip = middle + (from * 0.35 + to * 0.65).normalize_or(to) * (0.52 * length);
         Some(Hair {

@@ -11,11 +11,11 @@ override SAMPLES: u32 = 4u;
 const HALF_MM: f32 = 0.5;
 // An upper lash is finer than its blade at the root, a lower one about as wide.
 const FINE_UPPER: f32 = 0.62;
-const FINE_LOWER: f32 = 1.25;
+const FINE_LOWER: f32 = 1.0;
 
 // How far a tip curls up, and down on the lower lid, beyond its blade.
 const CURL_UP_MM: f32 = 1.1;
-const CURL_DOWN_MM: f32 = 1.3;
+const CURL_DOWN_MM: f32 = 0.7;
 // How far it strays to the side, at one radius of the eyeball from its middle.
 const FAN_MM: f32 = 1.5;
 
@@ -47,8 +47,9 @@ fn lash_vertex(in: PartVertex) -> LashFragment {
     let lower = in.uv.y > 1.5;
     // No two alike, and away from each other towards the corners.
     let chance = fract(sin(in.uv.x * 917.0) * 437.58);
-    let curl = (0.55 + 0.9 * chance) * select(tip * tip * CURL_UP_MM, -tip * CURL_DOWN_MM, lower);
-    let fan = tip * (FAN_MM * in.uv.x + 0.9 * (chance - 0.5));
+    let curl = (0.55 + 0.9 * chance) * select(tip * tip * CURL_UP_MM, -tip * (2.0 - tip) * CURL_DOWN_MM, lower);
+    // Lower ones hang before they sweep aside.
+    let fan = select(tip, tip * tip, lower) * (FAN_MM * in.uv.x + 0.5 * (chance - 0.5));
     let off = in.rest + vec3(fan, curl, 0.0) - across * half - centre;
     var turned = in;
     turned.rest = centre + vec3(off.x, off.y * c + off.z * s, off.z * c - off.y * s);
@@ -59,8 +60,9 @@ fn lash_vertex(in: PartVertex) -> LashFragment {
     let up = vec3(frame.clip_from_world[0].y, frame.clip_from_world[1].y, frame.clip_from_world[2].y);
     let pixel = 2.0 * distance / (length(up) * frame.picture.y);
     let fine = half * select(FINE_UPPER, FINE_LOWER, lower);
-    // One sample has no finer place: a wider band is smoother along the margin.
-    let drawn = max(fine, pixel * select(0.5, 0.7, SAMPLES == 1u));
+    // Coarse pixels show no blades but a band along the margin, the smoother the wider they are drawn.
+    let coarse = clamp(3.4 * pixel - 1.35, 0.0, 1.0);
+    let drawn = max(fine, pixel * select(0.5 + 0.3 * coarse, 0.7, SAMPLES == 1u));
 
     // Brown where light gets through the thin tips, and all along below, where they are finer and catch the light.
     let upper_albedo = mix(vec3(0.010, 0.007, 0.006), vec3(0.040, 0.026, 0.019), tip);
@@ -76,7 +78,8 @@ fn lash_vertex(in: PartVertex) -> LashFragment {
     let shine = 0.016 * exp2(-along * along * 20.0) * dot(frame.key_colour.rgb, vec3(0.3333));
     var out: LashFragment;
     out.clip = frame.clip_from_world * vec4(at.world + seen * drawn, 1.0);
-    let rounded = select((0.05 + 0.9 * chance) / f32(SAMPLES), 0.0, SAMPLES == 1u);
+    let unlike = 0.9 - 0.6 * coarse;
+    let rounded = select((0.5 + unlike * (chance - 0.5)) / f32(SAMPLES), 0.0, SAMPLES == 1u);
     out.light = vec4(albedo * (ambient_from(n) + 0.5 * frame.key_colour.rgb * abs(dot(n, frame.key_dir.xyz))) + shine,
         fine / drawn + rounded);
     return out;

@@ -12,7 +12,7 @@ use crate::noise::{Dice, ramp};
 /// Hairs in one brow.
 const HAIRS: usize = 820;
 /// Thickness of a hair at its root, mm: life has 0.08; finer than a texel it would vanish.
-const THICK_MM: f32 = 0.21;
+const THICK_MM: f32 = 0.18;
 
 /// How much hair covers each texel.
 pub(super) fn paint(head: &Head, width: usize, height: usize) -> Cover {
@@ -57,7 +57,7 @@ fn brow(field: &mut Field, lower: &Line, upper: &Line, seed: u64) {
         field.draw(&Stroke {
             points: [root, middle, tip].map(|p| p / CHART_MM),
             width: THICK_MM * (0.8 + 0.5 * dice.roll()) / CHART_MM.x,
-            strength: (0.72 + 0.28 * dice.roll()) * (0.66 + 0.34 * dense),
+            strength: (0.64 + 0.36 * dice.roll()) * (0.62 + 0.38 * dense),
         });
     }
     // The shade of skin under dense hair: without it single strokes look drawn on.

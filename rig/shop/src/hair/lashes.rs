@@ -1,5 +1,5 @@
-//! Lashes: tapering blades in fans along the lids' margins, curved away from the eye. They hang on the skull;
-//! the renderer turns them with the lids.
+//! Lashes: tapering blades in fans along the lids' margins, curved away from the eye, whose tips lean together by twos
+//! and threes. They hang on the skull; the renderer turns them with the lids.
 
 use glam::{Vec3, vec2, vec3};
 use mouthpiece_rig::{Body, Head, Material, Mesh, Part};
@@ -16,22 +16,33 @@ struct Row {
     width_mm: f32,
     /// How steeply they leave the lid, and how they turn from there: up is positive.
     rise: [f32; 2],
+    /// The shortest against the longest at the same place.
+    uneven: f32,
+    /// How many at most lean together, and how far of the way to one another at their tips.
+    together: f32,
+    gathered: f32,
     upper: bool,
 }
 
 const ROWS: [Row; 2] = [
     Row {
-        count: 64,
-        length_mm: [4.5, 7.5],
-        width_mm: 0.38,
+        count: 66,
+        length_mm: [4.5, 7.8],
+        width_mm: 0.36,
         rise: [-0.25, 0.95],
+        uneven: 0.62,
+        together: 4.0,
+        gathered: 0.60,
         upper: true,
     },
     Row {
-        count: 26,
-        length_mm: [1.8, 3.2],
-        width_mm: 0.13,
-        rise: [-0.45, -0.55],
+        count: 44,
+        length_mm: [2.2, 4.4],
+        width_mm: 0.10,
+        rise: [-0.70, -0.45],
+        uneven: 0.45,
+        together: 3.4,
+        gathered: 0.45,
         upper: false,
     },
 ];
@@ -125,10 +136,17 @@ fn grow(mesh: &mut Mesh, row: Row, margin: &[Vec3], eye: Vec3, radius: f32) {
     // Towards the temple.
     let out = eye.x.signum();
     let mut dice = Dice::new(if row.upper { 301 } else { 302 });
+    // Where those lean that stand together, and how many of them are still to come.
+    let (mut middle, mut left) = (0.0, 0_usize);
     for i in 0..row.count {
-        let along = (i as f32 + 0.5 + 0.4 * dice.spread()) / row.count as f32;
         // None at the inner corner; longest two thirds of the way out.
-        let along = 0.10 + 0.88 * along;
+        let placed = |number: f32| 0.10 + 0.88 * (number + 0.5) / row.count as f32;
+        if left == 0 {
+            left = 1 + (row.together * dice.roll()) as usize;
+            middle = placed(i as f32 + 0.5 * (left as f32 - 1.0) + 0.5 * dice.spread());
+        }
+        left -= 1;
+        let along = placed(i as f32 + 0.4 * dice.spread());
         let x = if out > 0.0 {
             first.x + (last.x - first.x) * along
         } else {
@@ -137,10 +155,12 @@ fn grow(mesh: &mut Mesh, row: Row, margin: &[Vec3], eye: Vec3, radius: f32) {
         let root = at(x) + vec3(0.0, if row.upper { 0.15 } else { -0.1 }, 0.15);
         let full = (std::f32::consts::PI * (0.15 + 0.75 * along)).sin();
         let [short, long] = row.length_mm;
-        let length = (short + (long - short) * full) * (0.75 + 0.25 * dice.roll());
+        let uneven = row.uneven + (1.0 - row.uneven) * dice.roll();
+        let length = (short + (long - short) * full) * uneven;
+        let lean = (middle - along) * (last.x - first.x) * out * row.gathered;
         // Away from the eye, fanned outwards along the lid.
         let away = (root - eye).normalize_or(Vec3::Z);
-        let fan = 1.5 * (along - 0.38) + 0.22 * dice.spread();
+        let fan = 1.5 * (along - 0.38) + 0.16 * dice.spread();
         let forward = vec3(away.x * 0.35 + fan * 0.62 * out, 0.0, 1.0).normalize_or(Vec3::Z);
         let mut place = root;
         let base = mesh.positions.len() as u32;
@@ -165,7 +185,7 @@ fn grow(mesh: &mut Mesh, row: Row, margin: &[Vec3], eye: Vec3, radius: f32) {
                 mesh.triangles.push([a, a + 2, a + 3]);
                 mesh.triangles.push([a, a + 3, a + 1]);
             }
-            place += heading * (length / STEPS as f32);
+            place += (heading * length + Vec3::X * lean) / STEPS as f32;
         }
     }
 }
