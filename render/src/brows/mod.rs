@@ -210,3 +210,122 @@ impl Ground {
         })
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::tier::Tier;
+    use mouthpiece_rig::{Control, Controls, KeyFrame, STEP_TICKS, Simulation, TICK_RATE};
+    use std::sync::Arc;
+
+    fn drawn(head: &Head) -> (SkinGeometry, Brows) {
+        let skin = SkinGeometry::of(head, Tier::Medium.detail().smoothness).unwrap();
+        let brows = Brows::of(head, &skin);
+        (skin, brows)
+    }
+
+    /// How far each hair's root, middle and tip is above the drawn skin, mm: none where no triangle lies under it.
+    fn above(skin: &SkinGeometry, brows: &Brows) -> Vec<[Option<f32>; PAIRS]> {
+        let points = skin.points();
+        let triangles: Vec<[Vec3; 3]> = skin
+            .indices
+            .chunks_exact(3)
+            .filter(|t| t.iter().all(|i| (*i as usize) < points.len()))
+            .map(|t| [t[0], t[1], t[2]].map(|i| points[i as usize]))
+            .filter(|[a, ..]| a.z > 60.0 && a.y > 30.0)
+            .collect();
+        let height = |p: Vec3| {
+            triangles
+                .iter()
+                .filter_map(|[a, b, c]| {
+                    let up = (b - a).cross(c - a);
+                    // A little past the sides: between two triangles there is a gap above a ridge.
+                    let inside = [[a, b], [b, c], [c, a]].iter().all(|[from, to]| {
+                        let share = (*to - *from).cross(p - *from).dot(up);
+                        share >= -0.2 * up.length_squared()
+                    });
+                    inside.then(|| (p - *a).dot(up.normalize_or_zero()))
+                })
+                .min_by(|a, b| a.abs().total_cmp(&b.abs()))
+        };
+        let place = |pair: &[BrowMoving]| Vec3::from(pair[0].position);
+        brows
+            .moving
+            .chunks_exact(2 * PAIRS)
+            .map(|hair| std::array::from_fn(|k| height(place(&hair[2 * k..]))))
+            .collect()
+    }
+
+    fn assert_on_skin(skin: &SkinGeometry, brows: &Brows) {
+        for [root, middle, tip] in above(skin, brows) {
+            let (root, middle, tip) = (root.unwrap(), middle.unwrap(), tip.unwrap());
+            assert!((-0.1..0.2).contains(&root), "a root {root} mm off the skin");
+            assert!((0.0..1.4).contains(&middle), "a hair {middle} mm off it");
+            assert!((0.0..1.9).contains(&tip), "a tip {tip} mm off it");
+        }
+    }
+
+    fn mean_height(brows: &Brows) -> f32 {
+        let sum: f32 = brows.moving.iter().map(|v| v.position[1]).sum();
+        sum / brows.moving.len() as f32
+    }
+
+    #[test]
+    fn hairs_stay_on_the_skin_when_brows_are_raised_or_drawn_together() {
+        let head = Arc::new(Head::reference().unwrap());
+        let (mut skin, mut brows) = drawn(&head);
+        let count = brows.hairs.len();
+        assert!((200..700).contains(&count), "{count} hairs");
+        assert_on_skin(&skin, &brows);
+        let rest = mean_height(&brows);
+        for (pulled, least, most) in [
+            (["frontalis_inner", "frontalis_outer"], 2.0, 15.0),
+            (["corrugator_supercilii", "procerus"], -8.0, -0.5),
+        ] {
+            let mut controls = Controls::default();
+            for name in pulled {
+                controls[Control::from_name(name).unwrap()] = 1.0;
+            }
+            let mut simulation = Simulation::new(Arc::clone(&head));
+            for _ in 0..TICK_RATE / 2 / STEP_TICKS {
+                simulation.step(&controls);
+            }
+            let mut frame = KeyFrame::default();
+            simulation.save(&mut frame);
+            skin.set(&frame.skin);
+            brows.set(&skin);
+            assert_on_skin(&skin, &brows);
+            let raised = mean_height(&brows) - rest;
+            assert!((least..most).contains(&raised), "{pulled:?}: {raised} mm");
+        }
+    }
+
+    #[test]
+    fn a_face_whose_colour_shows_no_brows_or_that_has_no_lines_for_them_grows_none() {
+        let mut head = Head::reference().unwrap();
+        let map = head.colour.as_mut().unwrap();
+        for texel in map.rgb.chunks_exact_mut(3) {
+            texel.copy_from_slice(&[204, 154, 132]);
+        }
+        assert!(drawn(&head).1.hairs.is_empty());
+        let mut head = Head::reference().unwrap();
+        head.features.retain(|f| !f.name.starts_with("brow"));
+        assert!(drawn(&head).1.hairs.is_empty());
+    }
+
+    #[test]
+    fn hairs_have_the_colour_of_the_brow_that_the_head_shows() {
+        let hue = |head: &Head| {
+            let (_, brows) = drawn(head);
+            brows.still[0].colour
+        };
+        let mut head = Head::reference().unwrap();
+        let dark = hue(&head);
+        let map = head.colour.as_mut().unwrap();
+        for texel in map.rgb.chunks_exact_mut(3) {
+            // A fair brow: half way to the skin.
+            texel[0] = 100 + texel[0] / 2;
+        }
+        assert!(hue(&head)[0] > dark[0] + 20, "{:?} {dark:?}", hue(&head));
+    }
+}
