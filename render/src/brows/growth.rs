@@ -10,7 +10,7 @@ use crate::maps::noise::Dice;
 use crate::maps::ramp;
 
 /// Tries at a hair in one brow: some fall where a brow is sparse. As few as look like a brow over the painted one.
-const TRIES: usize = 230;
+const TRIES: usize = 320;
 
 /// A hair on the chart, mm.
 #[derive(Clone, Copy, Debug)]
