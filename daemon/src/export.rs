@@ -13,7 +13,7 @@ use std::time::Instant as Wall;
 
 use anyhow::Context as _;
 use indicatif::{ProgressBar, ProgressStyle};
-use mouthpiece_render::{FRAMES_IN_FLIGHT, Gpu, Offscreen};
+use mouthpiece_render::{Batch, Gpu};
 
 use crate::cli::{BackgroundArg, ExportArgs, Fps, LookArgs, Size, Usage};
 use crate::input::Utterance;
@@ -104,25 +104,25 @@ impl Job {
         let instants = Instants::start(Arc::clone(&cast.head), part, times)?;
         let gpu = Gpu::headless()?;
         let size = (clip.width, clip.height);
-        let mut offscreen = Offscreen::new(&gpu, &cast.head, size, self.look.tier.into())?;
+        let mut batch = Batch::new(&gpu, &cast.head, size, self.look.tier.into())?;
         let view = self.look.view()?;
         let mut encoder = Encoder::start(sink)?;
 
         let mut next = Some(());
         let mut drawn = 0;
-        while next.is_some() || offscreen.in_flight() > 0 {
+        while next.is_some() || !batch.is_empty() {
             interrupt::check()?;
             next = next
                 .and_then(|()| instants.next())
                 .map(|instant| {
-                    let submitted = offscreen.submit(&instant.frame, &view);
+                    let submitted = batch.submit(&instant.frame, &view);
                     instants.recycle(instant);
                     submitted
                 })
                 .transpose()?;
-            // The card draws one picture while the one before it is read back.
-            if (next.is_none() || offscreen.in_flight() >= FRAMES_IN_FLIGHT)
-                && let Some(rgba) = offscreen.take()?
+            // While the next pictures are drawn, the oldest is read back.
+            if (next.is_none() || batch.is_full())
+                && let Some(rgba) = batch.take()?
             {
                 encoder.push(rgba)?;
                 drawn += 1;

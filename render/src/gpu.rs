@@ -104,11 +104,35 @@ impl Gpu {
         Self::open(instance, Some(surface))
     }
 
+    /// Another device of the same adapter, with a queue of its own.
+    ///
+    /// # Errors
+    /// When the driver opens it only once.
+    pub fn another(&self) -> Result<Self, GpuError> {
+        Self::of(&self.instance, self.adapter.clone())
+    }
+
     fn open(
         instance: &wgpu::Instance,
         surface: Option<&wgpu::Surface<'_>>,
     ) -> Result<Self, GpuError> {
-        let adapter = choose(instance, surface)?;
+        let opened = Self::of(instance, choose(instance, surface)?)?;
+        let info = &opened.info;
+        tracing::info!(
+            adapter = %info.name, kind = ?info.device_type, backend = %info.backend,
+            driver = %format!("{} {}", info.driver, info.driver_info), "graphics adapter"
+        );
+        if opened.is_software() {
+            tracing::warn!(
+                adapter = %info.name,
+                "drawing in software, on the processor: expect few frames a second at large sizes; \
+                 install the driver of the graphics card if there is one"
+            );
+        }
+        Ok(opened)
+    }
+
+    fn of(instance: &wgpu::Instance, adapter: wgpu::Adapter) -> Result<Self, GpuError> {
         let info = adapter.get_info();
         let (device, queue) = pollster::block_on(adapter.request_device(&wgpu::DeviceDescriptor {
             label: Some("mouthpiece"),
@@ -119,17 +143,6 @@ impl Gpu {
             adapter: info.name.clone(),
             source,
         })?;
-        tracing::info!(
-            adapter = %info.name, kind = ?info.device_type, backend = %info.backend,
-            driver = %format!("{} {}", info.driver, info.driver_info), "graphics adapter"
-        );
-        if info.device_type == DeviceType::Cpu {
-            tracing::warn!(
-                adapter = %info.name,
-                "drawing in software, on the processor: expect few frames a second at large sizes; \
-                 install the driver of the graphics card if there is one"
-            );
-        }
         let lost = Arc::new(AtomicBool::new(false));
         let flag = Arc::clone(&lost);
         device.set_device_lost_callback(move |reason, message| {

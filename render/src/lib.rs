@@ -11,11 +11,12 @@
 //! lamp sees it, and the picture. Each shader ends in the film's curve, so the resolve of the
 //! multisampled picture averages finished colours.
 //!
-//! [`Offscreen`] reads pictures back, two in flight; [`WindowTarget`] shows them. Neither knows
-//! of time: the caller says which key frame is now.
+//! [`Offscreen`] reads pictures back, two in flight, and a [`Batch`] keeps all cores at it; [`WindowTarget`] shows them. None
+//! knows of time: the caller says which key frame is now.
 
 #![forbid(unsafe_code)]
 
+mod batch;
 mod bindings;
 mod brows;
 mod environment;
@@ -53,6 +54,7 @@ mod window;
 #[cfg(test)]
 mod wrong_shader_tests;
 
+pub use batch::Batch;
 pub use environment::Environment;
 pub use error::RenderError;
 pub use governor::Governor;

@@ -23,7 +23,7 @@ impl Renderer {
         pass.set_bind_group(0, &self.frame_group, &[]);
         match shown {
             Shown::Face | Shown::Yardstick => {
-                self.draw_skin(&mut pass, Draw::SkinShadow, &self.skin_indices);
+                self.draw_skin(&mut pass, Draw::SkinShadow, &self.casting_indices);
             }
             Shown::Anatomy => {
                 pass.set_pipeline(self.pipelines.get(Draw::PartShadow));
@@ -93,6 +93,13 @@ impl Renderer {
                 pass.draw(0..BACKDROP_VERTICES, 0..1);
             }
         }
+        if self.samples == 1 && view.shown == Shown::Face {
+            // What is blended comes after all that it lets show.
+            pass.set_bind_group(1, &self.shadow_group, &[]);
+            for (material, buffers) in self.parts.iter().filter(|(m, _)| *m == Material::Lash) {
+                self.draw_material(&mut pass, *material, buffers);
+            }
+        }
         if view.flash {
             pass.set_pipeline(self.pipelines.get(Draw::Flash));
             pass.draw(0..6, 0..1);
@@ -121,6 +128,7 @@ impl Renderer {
                 m,
                 Material::Hair | Material::Bone | Material::Muscle | Material::Spring
             ) && (mouth_open || !in_mouth(m))
+                && (self.samples > 1 || m != Material::Lash)
         };
         for (material, buffers) in self.parts.iter().filter(|(m, _)| drawn(*m)) {
             self.draw_material(pass, *material, buffers);
@@ -165,8 +173,7 @@ impl Renderer {
     }
 }
 
-/// Front to back as far as a head goes, so that what is hidden is not shaded; lashes may let show what is behind
-/// them. `Skin` is the head's
+/// Front to back as far as a head goes, so that what is hidden is not shaded. `Skin` is the head's
 /// own mesh: parts of that material do not occur.
 pub(crate) const DRAW_ORDER: [Material; 11] = [
     Material::Spring,
@@ -174,8 +181,8 @@ pub(crate) const DRAW_ORDER: [Material; 11] = [
     Material::Bone,
     Material::Hair,
     Material::Cloth,
-    Material::Eye,
     Material::Lash,
+    Material::Eye,
     Material::Teeth,
     Material::Gums,
     Material::Tongue,

@@ -69,6 +69,7 @@ pub struct Renderer {
     pub(crate) skin_still: wgpu::Buffer,
     pub(crate) skin_indices: wgpu::Buffer,
     pub(crate) inside_indices: wgpu::Buffer,
+    pub(crate) casting_indices: wgpu::Buffer,
     pub(crate) parts: Vec<(Material, PartBuffers)>,
     pub(crate) brows: Brows,
     /// None where there are no hairs.
@@ -147,6 +148,8 @@ impl Renderer {
         let skin_still = upload::buffer(gpu, "skin, still", &skin.still, vertex);
         let skin_indices = upload::buffer(gpu, "skin", &skin.indices, wgpu::BufferUsages::INDEX);
         let inside_indices = upload::buffer(gpu, "inside", &skin.inside, wgpu::BufferUsages::INDEX);
+        let casting_indices =
+            upload::buffer(gpu, "casting", &skin.casting, wgpu::BufferUsages::INDEX);
         // Where a pixel is one sample hairs are too thin to be seen.
         let brows = if samples > 1 {
             Brows::of(head, &skin)
@@ -201,6 +204,7 @@ impl Renderer {
             skin_still,
             skin_indices,
             inside_indices,
+            casting_indices,
             parts,
             brows,
             brow_buffers,

@@ -21,6 +21,8 @@ pub(crate) struct SkinGeometry {
     pub(crate) indices: Vec<u32>,
     /// The triangles round the mouth, whose backs show through it.
     pub(crate) inside: Vec<u32>,
+    /// The head's own triangles, which are fine enough to cast the skin's soft shadow.
+    pub(crate) casting: Vec<u32>,
     control_count: usize,
     points: Vec<Vec3>,
     normals: Vec<Vec3>,
@@ -31,11 +33,12 @@ impl SkinGeometry {
     pub(crate) fn of(head: &Head, smoothness: Smoothness) -> Result<Self, SubdivisionError> {
         let skin = &head.skin;
         let rest = &skin.mesh.positions;
+        let hidden = under_hair(head);
         let surface = head.subdivision(&Detail {
             levels: smoothness.levels,
             bow_mm: smoothness.bow_mm,
             rest,
-            hidden: &under_hair(head),
+            hidden: &hidden,
         })?;
         let [weight, vermilion, wet, occlusion] = [
             &skin.weight,
@@ -70,6 +73,7 @@ impl SkinGeometry {
             still,
             indices: surface.triangles().as_flattened().to_vec(),
             inside: inside_indices(head),
+            casting: casting_indices(head, &hidden),
             control_count: rest.len(),
             points: vec![Vec3::ZERO; points],
             normals: vec![Vec3::ZERO; points],
@@ -164,6 +168,13 @@ fn inside_indices(head: &Head) -> Vec<u32> {
         .flatten()
         .copied()
         .collect()
+}
+
+/// All but what is covered by hair, as it is drawn.
+fn casting_indices(head: &Head, hidden: &[bool]) -> Vec<u32> {
+    let seen = |t: &&[u32; 3]| !t.iter().all(|&i| hidden[i as usize]);
+    let triangles = head.skin.mesh.triangles.iter();
+    triangles.filter(seen).flatten().copied().collect()
 }
 
 /// Which skin vertices lie deep under hair: triangles of them need not be drawn.

@@ -39,8 +39,8 @@ impl FromStr for Tier {
 pub(crate) struct Smoothness {
     /// How often a side of the head's own triangles may be halved.
     pub(crate) levels: usize,
-    /// A side is halved where the surface bows from it by more than this, mm; 0: always. A quarter of a
-    /// pixel in a picture of 640 x 480, where each triangle more is felt in software.
+    /// A side is halved where the surface bows from it by more than this, mm; 0: always. A pixel of a picture of
+    /// 640 x 480 is about 0.6 mm wide, and in software each triangle more is felt.
     pub(crate) bow_mm: f32,
 }
 
@@ -109,7 +109,7 @@ impl Tier {
             Self::Medium => Detail {
                 smoothness: Smoothness {
                     levels: 1,
-                    bow_mm: 0.15,
+                    bow_mm: 0.25,
                 },
                 samples: 4,
                 mask_map: 1024,
