@@ -15,7 +15,7 @@ const FINE_LOWER: f32 = 1.0;
 
 // How far a tip curls up, and down on the lower lid, beyond its blade.
 const CURL_UP_MM: f32 = 1.1;
-const CURL_DOWN_MM: f32 = 0.7;
+const CURL_DOWN_MM: f32 = 0.5;
 // How far it strays to the side, at one radius of the eyeball from its middle.
 const FAN_MM: f32 = 1.5;
 
@@ -43,8 +43,8 @@ fn lash_vertex(in: PartVertex) -> LashFragment {
     let across = strand_direction(in.shares.zw);
     let half = in.shares.x * HALF_MM;
     // Seen from before, lashes point at the eye that sees them: their curl shows their length.
-    let tip = fract(in.uv.y * 0.999);
     let lower = in.uv.y > 1.5;
+    let tip = in.uv.y - select(0.0, 2.0, lower);
     // No two alike, and away from each other towards the corners.
     let chance = fract(sin(in.uv.x * 917.0) * 437.58);
     let curl = (0.55 + 0.9 * chance) * select(tip * tip * CURL_UP_MM, -tip * (2.0 - tip) * CURL_DOWN_MM, lower);
@@ -66,7 +66,7 @@ fn lash_vertex(in: PartVertex) -> LashFragment {
 
     // Brown where light gets through the thin tips, and all along below, where they are finer and catch the light.
     let upper_albedo = mix(vec3(0.010, 0.007, 0.006), vec3(0.040, 0.026, 0.019), tip);
-    let lower_albedo = mix(vec3(0.036, 0.023, 0.016), vec3(0.105, 0.068, 0.048), tip);
+    let lower_albedo = mix(vec3(0.050, 0.032, 0.023), vec3(0.130, 0.084, 0.060), tip);
     let albedo = select(upper_albedo, lower_albedo, lower);
     let v = normalize(frame.eye.xyz - at.world);
     let h = normalize(frame.key_dir.xyz + v);
