@@ -11,10 +11,12 @@ use crate::maps::ramp;
 
 /// Short hairs a square mm, and how far off the hairline they grow, outside and inside, mm.
 const FINE_DENSITY: f32 = 0.17;
-const FINE_MM: [f32; 2] = [-4.5, 6.0];
+const FINE_MM: [f32; 2] = [-4.5, 3.5];
 /// `uv.x` of a single hair: 2 on its left side, 6 on its right one, plus the place in the map that gives its tone. Keep in
 /// step with shaders/hair.wgsl, which gives it its width.
 const SINGLE: [f32; 2] = [2.0, 6.0];
+/// Length up to which a hair is straight, mm.
+const STRAIGHT_MM: f32 = 6.5;
 /// How far from a card's root its growth is still known, mm.
 const KNOWN_MM: f32 = 22.0;
 
@@ -85,17 +87,18 @@ pub(super) fn grow_fine(
 
 /// One of them, from the skin and along it.
 fn fine_hair(out: &mut Mesh, root: Vec3, normal: Vec3, along: Vec3, length: f32, dice: &mut Dice) {
-    const STEPS: usize = 2;
     let first = out.positions.len();
     let flat = (along - normal * along.dot(normal)).normalize_or(normal.any_orthonormal_vector());
     let side = normal.cross(flat);
-    let mut heading = (flat + side * (0.9 * dice.spread())).normalize_or(flat);
-    let bend = side * (0.8 * dice.spread());
+    let mut heading = (flat + side * (0.45 * dice.spread())).normalize_or(flat);
+    let bend = side * (0.6 * dice.spread());
     let tone = 0.5 * dice.roll();
     let light = 0.75 + 0.2 * dice.roll();
     let mut place = root;
-    for i in 0..=STEPS {
-        let v = i as f32 / STEPS as f32;
+    // Short ones are straight.
+    let steps = if length > STRAIGHT_MM { 2 } else { 1 };
+    for i in 0..=steps {
+        let v = i as f32 / steps as f32;
         let at = place + normal * (0.1 + 1.1 * v * (1.0 - 0.35 * v));
         push_pair(
             out,
@@ -106,7 +109,7 @@ fn fine_hair(out: &mut Mesh, root: Vec3, normal: Vec3, along: Vec3, length: f32,
             light,
         );
         heading = (heading + bend * 0.5).normalize_or(heading);
-        place += heading * (length / STEPS as f32);
+        place += heading * (length / steps as f32);
     }
     join(out, first);
 }

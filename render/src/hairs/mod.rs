@@ -10,7 +10,7 @@ use fine::{grow_fine, roots, single};
 use glam::{Vec2, Vec3, vec2};
 use mouthpiece_rig::{Head, Mesh, Part};
 
-use crate::maps::hair::{COLUMNS, DENSE, LOOSE};
+use crate::maps::hair::{COLUMNS, DENSE, EVEN, LOOSE};
 use crate::maps::hairline::Hairline;
 use crate::maps::noise::Dice;
 use crate::maps::ramp;
@@ -19,16 +19,19 @@ use crate::maps::ramp;
 const WIDE_MM: f32 = 7.0;
 /// Into as many at most.
 const SPLIT_MAX: usize = 2;
-/// How deep within the hairline the cap is whole, and how deep it is gone, mm.
-const CAP_MM: [f32; 2] = [11.0, 4.0];
+/// Where between crown and edge the cap begins to fade, and how far it has at the edge: 1 is to the roots of its strands.
+const CAP_WHOLE: f32 = 0.8;
+const CAP_FADE: f32 = 0.62;
 /// Least light at the roots of cards, as a share of what the head says is missing there.
 const LEAST_LIGHT: f32 = 0.55;
-/// Light on the cap, and how much of the head's own unevenness is left: it is seen between the cards.
-const CAP_LIGHT: f32 = 0.46;
-const CAP_UNEVEN: f32 = 0.25;
+/// Light on the cap, and how much more of it by the head's own: it is seen between the cards.
+const CAP_LIGHT: f32 = 0.30;
+const CAP_UNEVEN: f32 = 0.62;
+/// Which stretch of the strands' map the cap shows from the crown to its edge. Keep in step with shaders/hair.wgsl.
+const CAP_ALONG: f32 = 0.42;
 /// Shade that hair throws on the skin before it: how much, and where it begins and is deepest, mm within
 /// the hairline. Farther in hair is painted on the skin, and dark.
-const SHADE: f32 = 0.42;
+const SHADE: f32 = 0.30;
 const SHADE_MM: [f32; 2] = [-9.0, 2.0];
 const PAINTED_MM: [f32; 2] = [3.0, 10.0];
 /// A ribbon: pairs of vertices from root to tip.
@@ -62,7 +65,7 @@ pub(crate) fn dressed(head: &Head, part: &Part, fine: bool) -> Mesh {
             split(&mut out, mesh, card, &mut dice);
         }
     }
-    keep_cap(&mut out, mesh, head, hairline.as_ref());
+    keep_cap(&mut out, mesh);
     out
 }
 
@@ -126,7 +129,11 @@ fn split(out: &mut Mesh, mesh: &Mesh, card: &Card, dice: &mut Dice) {
     let width = (0..card.pairs)
         .map(|i| pair(i).0.distance(pair(i).1))
         .fold(0.0, f32::max);
-    let parts = ((width / WIDE_MM).ceil() as usize).clamp(1, SPLIT_MAX);
+    let mut parts = ((width / WIDE_MM).ceil() as usize).clamp(1, SPLIT_MAX);
+    // Even strands have no locks to tell apart.
+    if (mesh.uvs[card.first].x * COLUMNS as f32) as usize == EVEN {
+        parts = 1;
+    }
     let share = 1.0 / parts as f32;
     for part in 0..parts {
         let first = out.positions.len();
@@ -138,7 +145,7 @@ fn split(out: &mut Mesh, mesh: &Mesh, card: &Card, dice: &mut Dice) {
             0.5
         };
         let stray = if parts > 1 { 0.32 * dice.spread() } else { 0.0 };
-        let raised = if parts > 1 { 0.9 * dice.spread() } else { 0.0 };
+        let raised = if parts > 1 { 0.5 * dice.spread() } else { 0.0 };
         let longer = if parts > 1 {
             0.68 + 0.32 * dice.roll()
         } else {
@@ -208,31 +215,20 @@ pub(crate) fn shaded_skin(head: &Head) -> Vec<f32> {
 }
 
 /// The cap, with roots to show and fading towards the hairline: there the skin shows painted ones.
-fn keep_cap(out: &mut Mesh, mesh: &Mesh, head: &Head, hairline: Option<&Hairline>) {
-    let skin = &head.skin.mesh;
-    // Where strands' columns lie round the head: to and fro over the dense ones.
-    let centre = mesh.positions.iter().sum::<Vec3>() / mesh.positions.len().max(1) as f32;
+fn keep_cap(out: &mut Mesh, mesh: &Mesh) {
     let mut place = vec![u32::MAX; mesh.positions.len()];
     for (i, p) in mesh.positions.iter().enumerate() {
         if mesh.uvs[i].y >= -0.5 {
             continue;
         }
         place[i] = out.positions.len() as u32;
-        let depth = hairline.map_or(f32::INFINITY, |line| {
-            let nearest = skin.positions.iter().zip(&skin.uvs).min_by(|a, b| {
-                a.0.distance_squared(*p)
-                    .total_cmp(&b.0.distance_squared(*p))
-            });
-            nearest.map_or(f32::INFINITY, |(_, uv)| line.depth_mm(*uv))
-        });
-        let faded = ((CAP_MM[0] - depth) / (CAP_MM[0] - CAP_MM[1])).clamp(0.0, 1.6);
-        let turn = (p.x - centre.x).atan2(p.z - centre.z) / std::f32::consts::TAU;
-        let to_and_fro = ((turn * 14.0).rem_euclid(2.0) - 1.0).abs();
+        let down = (-1.0 - mesh.uvs[i].y).clamp(0.0, 1.0);
+        let faded = CAP_FADE * ((down - CAP_WHOLE) / (1.0 - CAP_WHOLE)).max(0.0).powi(2);
         out.positions.push(*p);
         out.normals.push(mesh.normals[i]);
         out.uvs.push(vec2(
-            (0.05 + to_and_fro * (DENSE as f32 - 0.1)) / COLUMNS as f32,
-            -1.0 - faded,
+            mesh.uvs[i].x,
+            -1.0 - CAP_ALONG * (down / CAP_WHOLE).min(1.0) - faded,
         ));
         out.occlusion
             .push(CAP_LIGHT + CAP_UNEVEN * mesh.occlusion[i]);

@@ -14,6 +14,8 @@ use super::{parallel_rows, ramp};
 pub(crate) const COLUMNS: usize = 8;
 /// See [`COLUMNS`].
 pub(crate) const DENSE: usize = 4;
+/// See [`COLUMNS`]: of the dense ones that whose strands gather in no locks.
+pub(crate) const EVEN: usize = DENSE - 1;
 /// See [`COLUMNS`].
 pub(crate) const LOOSE: usize = 2;
 
@@ -30,6 +32,8 @@ struct Strand {
     tone: f32,
     light: f32,
     shift: f32,
+    /// Light that its root lacks.
+    root_shade: f32,
 }
 
 /// What grows in a column.
@@ -49,7 +53,18 @@ struct Growth {
 }
 
 const fn growth(column: usize) -> Growth {
-    if column < DENSE {
+    if column == EVEN {
+        // Neither begin nor end together: such cards are to be seen nowhere.
+        Growth {
+            count: 300,
+            half_width: 0.0085,
+            margin: 0.02,
+            locks: 9.0,
+            gather: 0.0,
+            start: 0.36,
+            end: 0.56,
+        }
+    } else if column < DENSE {
         Growth {
             count: 300,
             half_width: 0.0085,
@@ -127,16 +142,25 @@ fn strands(column: usize) -> Vec<Strand> {
             let middle = (number + 0.5) / g.locks;
             let off = (share - middle) * g.locks;
             let lock = value(number * 1.7 + 0.5, seed, 31);
+            // Of even strands each is a lock of its own.
+            let even = column == EVEN;
+            let lock = if even { 0.5 * lock + 0.25 } else { lock };
             let fine = value(share * g.locks * 4.0, seed, 32);
-            let lean = 0.12 * (lock - 0.5) + 0.05 * dice.spread();
+            let lean = if even { 0.0 } else { 0.12 * (lock - 0.5) } + 0.05 * dice.spread();
             let bend = 0.05 * dice.spread();
             // Some leave their lock.
             let stray = if dice.roll() < 0.12 { 0.10 } else { 0.0 };
             let tip = x + (middle - share) * g.gather + lean + stray * dice.spread();
-            let start = 0.02 + g.start * dice.roll();
+            let start = dice.roll();
+            let start = 0.02 + g.start * if even { start.sqrt() } else { start };
             let longest = 0.80 + 0.19 * lock;
             let end = longest
                 - (longest - g.end) * (0.75 * off.abs() * 2.0 * dice.roll() + 0.25 * dice.roll());
+            let end = if even {
+                0.99 + (g.end - 0.99) * dice.roll().sqrt()
+            } else {
+                end
+            };
             Strand {
                 across: [x, 0.5 * (x + tip) + bend, tip],
                 along: [start, end.max(start + 0.15)],
@@ -145,6 +169,7 @@ fn strands(column: usize) -> Vec<Strand> {
                 // What lies behind lies in shade.
                 light: 0.42 + 0.58 * front.sqrt(),
                 shift: dice.roll(),
+                root_shade: if even { 0.08 } else { 0.22 },
             }
         })
         .collect()
@@ -166,7 +191,7 @@ fn lay(texels: &mut [Texel], (width, height): (usize, usize), column: usize, str
         // Thin at the tip, and it comes out of the skin by degrees.
         let half = (strand.half_width * scale * (1.0 - 0.75 * t * t * t)).max(0.35);
         let present = ramp(0.0, 0.10, t) * (1.0 - 0.7 * ramp(0.8, 1.0, t)) * (2.0 * half).min(1.0);
-        let light = strand.light * (0.78 + 0.22 * ramp(0.0, 0.45, t));
+        let light = strand.light * (1.0 - strand.root_shade * ramp(0.45, 0.0, t));
         let reach = half * SHADE_WIDTHS + 0.5;
         let from = (centre - reach).max(left) as usize;
         let to = ((centre + reach).ceil() as usize).min((left + scale) as usize);

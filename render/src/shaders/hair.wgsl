@@ -105,10 +105,11 @@ fn hair_vertex(in: PartVertex) -> HairFragment {
 @fragment
 fn hair(in: HairFragment) -> @location(0) vec4<f32> {
     let cap = in.places.y < -0.5;
-    // Towards its edge the cap shows the strands' ragged roots, then nothing.
-    let along = select(in.places.y, 0.55 * (2.0 + in.places.y), cap);
+    // Towards its edge the cap shows the strands' ragged roots, then nothing. Keep in step with hairs/mod.rs.
+    let gone = -1.0 - in.places.y;
+    let along = select(in.places.y, 0.6 * (1.0 - gone), cap);
     let map = textureSample(hair_map, map_sampler, vec2(in.places.x, along));
-    let card = select(map.a, max(map.a, 1.0 - 2.5 * (-1.0 - in.places.y)), cap);
+    let card = select(map.a, max(map.a, 1.0 - 2.5 * (gone - 0.42)), cap);
     let cover = select(card, in.behind.y, in.behind.y < 1.5);
     // Whole samples: every card rounds alike. Keep in step with maps/hair.rs.
     let samples = f32(SAMPLES);
@@ -120,8 +121,8 @@ fn hair(in: HairFragment) -> @location(0) vec4<f32> {
     let mirrored = in.places.z + (shift - TILT) * in.places.w;
     let coloured = in.places.z + (shift + 1.5 * TILT) * in.places.w;
     // The cap lies deep and shows its strands faintly.
-    let tone = select(map.r, 0.6 * map.r + 0.18, cap);
-    let reached = select(map.g, 0.5 * map.g + 0.38, cap);
+    let tone = select(map.r, 0.8 * map.r + 0.09, cap);
+    let reached = select(map.g, 0.7 * map.g + 0.24, cap);
     let base = mix(DARK, PALE, tone * tone);
     let near = reached * reached;
     let light = base * (in.light.rgb * reached)

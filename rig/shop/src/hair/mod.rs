@@ -8,8 +8,9 @@
 //! # What a vertex says
 //! `uv`: v runs from root (0) to tip (1) of the strands, so that `dP/dv` is their direction; u picks a column of
 //! the painted strands: [`COLUMNS`] of equal width, the first [`DENSE`] dense, then [`LOOSE`] loose
-//! locks of which only the first is thick, the rest single hairs. The cap
-//! has v below 0. `occlusion`: how much light reaches so deep.
+//! locks of which only the first is thick, the rest single hairs. The last dense one
+//! is [`EVEN`]. The cap
+//! shows that, too; its v is -1 at the crown, -1.8 a cm before its edge, -2 at its edge. `occlusion`: how much light reaches so deep.
 
 mod cap;
 mod cards;
@@ -26,6 +27,8 @@ use scalp::Scalp;
 pub const COLUMNS: usize = 8;
 /// How many of them are dense.
 pub const DENSE: usize = 4;
+/// Which of those has strands that gather in no locks: for short hair.
+pub const EVEN: usize = DENSE - 1;
 /// How many are loose locks.
 pub const LOOSE: usize = 2;
 

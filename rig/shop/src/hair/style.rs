@@ -19,7 +19,7 @@ pub(super) struct Growth {
 const PARTING_MM: f32 = 31.0;
 
 /// 1 where the hair is long (the top of the head), 0 on sides and nape.
-fn top(p: Vec3) -> f32 {
+pub(super) fn top(p: Vec3) -> f32 {
     // The long hair reaches lower in front than at the back.
     ramp(72.0, 108.0, p.y + 0.10 * p.z)
 }
@@ -69,8 +69,8 @@ pub(super) fn growth(p: Vec3, scalp: &Scalp) -> Growth {
     let fine = value(p.x * 0.14 + 60.0, (p.y + p.z) * 0.12 + 60.0, 6) - 0.5;
     let flat = (wanted - normal * wanted.dot(normal)).normalize_or(Vec3::NEG_Y);
     let across = normal.cross(flat);
-    let along =
-        (flat + across * ((0.75 * lean + 0.5 * fine) * (0.45 + 0.55 * top))).normalize_or(flat);
+    let along = (flat + across * ((0.62 * lean + 0.40 * fine) * (0.25 + 0.75 * top * top)))
+        .normalize_or(flat);
 
     let long = if side < 0.0 { 52.0 - 10.0 * back } else { 36.0 };
     let tapered = 9.0 + 17.0 * ramp(-30.0, 75.0, p.y);
@@ -91,6 +91,6 @@ pub(super) fn height_mm(p: Vec3, scalp: &Scalp) -> f32 {
     let quiff = 8.0 * (-((p.x + 6.0) / 27.0).powi(2)).exp() * ramp(30.0, 66.0, p.z) * top;
     let full = side + (over - side) * top + quiff;
     let grown = 1.0 - (-depth / (8.0 + 6.0 * top)).exp();
-    let uneven = 1.0 + 0.30 * (value(p.x * 0.06 + 9.0, (p.z + p.y) * 0.05 + 9.0, 12) - 0.5) * top;
+    let uneven = 1.0 + 0.20 * (value(p.x * 0.06 + 9.0, (p.z + p.y) * 0.05 + 9.0, 12) - 0.5) * top;
     full * grown * uneven * (1.0 - 0.35 * parting(p))
 }
