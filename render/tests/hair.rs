@@ -108,3 +108,26 @@ fn hair_is_as_dense_and_as_bright_from_far_as_from_near() {
         }
     }
 }
+
+#[test]
+fn lower_lashes_are_fine_and_paler_than_the_lid_s_margin() {
+    let Some(gpu) = or_skipped(Gpu::headless()) else {
+        return;
+    };
+    let head = Head::reference().unwrap();
+    // Below the margin of both eyes at rest: lashes and skin, nothing else. Black dots once stood there in `low`.
+    let rows = 251..258;
+    let columns = || (164..206).chain(274..316);
+    for tier in Tier::ALL {
+        let mut offscreen = Offscreen::new(&gpu, &head, (SIDE, SIDE), tier).unwrap();
+        let pixels = offscreen
+            .render(&head.rest_frame(), &view(Camera::Front))
+            .unwrap();
+        for y in rows.clone() {
+            for x in columns() {
+                let green = pixels[4 * (y * SIDE as usize + x) + 1];
+                assert!(green > 80, "{tier:?}: {green} at {x}, {y}");
+            }
+        }
+    }
+}
