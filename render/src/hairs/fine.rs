@@ -10,7 +10,7 @@ use crate::maps::noise::Dice;
 use crate::maps::ramp;
 
 /// Short hairs a square mm, and how far off the hairline they grow, outside and inside, mm.
-const FINE_DENSITY: f32 = 0.17;
+const FINE_DENSITY: f32 = 0.145;
 const FINE_MM: [f32; 2] = [-4.5, 3.5];
 /// `uv.x` of a single hair: 2 on its left side, 6 on its right one, plus the place in the map that gives its tone. Keep in
 /// step with shaders/hair.wgsl, which gives it its width.

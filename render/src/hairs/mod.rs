@@ -1,5 +1,5 @@
 //! What is done to a head's hair before it is drawn: wide cards are split into narrow ones that do not end
-//! together, the cap fades where the skin's own painted roots begin, and short fine hairs grow across the
+//! together (those of short even hair stay), the cap fades where the skin's own painted roots begin, and short fine hairs grow across the
 //! hairline. All from the head's own parts and features, so that fitted heads get it too.
 //!
 //! Hair that is not made of cards (see the head shop's `hair`) is left as it is.
@@ -152,7 +152,7 @@ fn split(out: &mut Mesh, mesh: &Mesh, card: &Card, dice: &mut Dice) {
             1.0
         };
         let shade = if parts > 1 {
-            0.74 + 0.26 * dice.roll()
+            0.84 + 0.16 * dice.roll()
         } else {
             1.0
         };
@@ -278,6 +278,7 @@ mod tests {
             let cards = cards(m);
             let wide = cards
                 .iter()
+                .filter(|c| (m.uvs[c.first].x * COLUMNS as f32) as usize != EVEN)
                 .map(|c| m.positions[c.first + 2].distance(m.positions[c.first + 3]));
             wide.fold(0.0, f32::max)
         };

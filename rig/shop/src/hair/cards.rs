@@ -54,7 +54,7 @@ const KINDS: [Kind; 6] = [
     // Thin locks that fall over the edge of the forehead.
     Kind {
         region: Region::Fringe,
-        tries: 2200,
+        tries: 1900,
         depth_mm: 0.0,
         width_mm: [2.5, 6.0],
         length: [0.40, 0.72],
@@ -238,7 +238,7 @@ fn card(mesh: &mut Mesh, scalp: &Scalp, kind: &Kind, root: Vec3, depth: f32, dic
     let fall = kind.fall * (0.4 + 0.9 * dice.roll());
     let column = kind.columns.0 + (dice.roll() * kind.columns.1 as f32) as usize;
     let flip = dice.roll() < 0.5;
-    let light = 0.90 + 0.10 * dice.roll();
+    let light = 0.93 + 0.07 * dice.roll();
     // Short hair hides no roots.
     let root_light = 0.9 + (kind.root_light - 0.9) * style::top(root);
     let round = if kind.region == Region::Short {
