@@ -5,7 +5,7 @@
 //! # The life of a picture
 //! [`Gpu`] picks an adapter and says which. [`Renderer::new`] paints the maps of skin, eyes and hair
 //! on the processor (`maps`), turns the head's meshes into buffers (`surface`, `geometry`) and its
-//! shaders into pipelines (`recipes`, `pipelines`). For each picture the skin's positions and normals and one uniform block
+//! shaders into pipelines (`recipes`, `pipelines`). For each picture the skin's positions and normals, the hairs that follow it (`brows`) and one uniform block
 //! (`gpu_data::Frame`) go up: where the bodies are, the camera ([`View`], [`Extent`]), the lamps
 //! (`studio`) and the room's light (`environment`, `harmonics`), and how far mouth and eyes are open (`openings`). Then two passes: depth as the key
 //! lamp sees it, and the picture. Each shader ends in the film's curve, so the resolve of the

@@ -195,6 +195,10 @@ impl Ground {
     /// The triangle under a place, and where on it that is.
     fn hold(&self, place: Vec2, off: f32) -> Option<Held> {
         self.triangles.iter().find_map(|(points, [a, b, c])| {
+            // Most are elsewhere: that is seen without a division.
+            if (place.x < a.x.min(b.x).min(c.x)) | (place.x > a.x.max(b.x).max(c.x)) {
+                return None;
+            }
             let area = (*b - *a).perp_dot(*c - *a);
             if area.abs() < 1e-9 {
                 return None;
