@@ -116,7 +116,7 @@ mod tests {
         let segments = vec![Segment::new(Phone::Aa, 0, end)];
         Labels {
             segments,
-            words: Vec::new(),
+            ..Labels::default()
         }
     }
 

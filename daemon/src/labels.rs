@@ -28,10 +28,14 @@ pub fn run(args: &LabelsArgs) -> anyhow::Result<()> {
             "end": labels.end(),
             "segments": labels.segments,
             "words": labels.words,
+            "notes": labels.notes.iter().map(ToString::to_string).collect::<Vec<_>>(),
             "warnings": warnings.iter().map(ToString::to_string).collect::<Vec<_>>(),
         });
         let text = serde_json::to_string_pretty(&report)? + "\n";
         return output::write_or_print(args.output.as_deref(), &text);
+    }
+    for note in &labels.notes {
+        tracing::warn!("{name}: {note}");
     }
     for warning in &warnings {
         tracing::warn!("{name}: {warning}");

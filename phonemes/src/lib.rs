@@ -15,15 +15,19 @@
 //! | `error` | what is wrong with those that cannot |
 //! | [`limits`] | how much a file or stream may ask for |
 //! | `lines` | cuts pieces of any size into lines |
+//! | [`alphabet`] | other alphabets' symbols as TIMIT's phones |
+//! | `note` | what a reader had to guess |
 //! | `nearest` | which code an unknown one resembles |
 
 #![forbid(unsafe_code)]
 
+pub mod alphabet;
 mod check;
 mod error;
 pub mod limits;
 mod lines;
 mod nearest;
+mod note;
 mod phone;
 mod reader;
 mod segment;
@@ -31,9 +35,11 @@ mod tick;
 pub mod timit;
 mod writer;
 
+pub use alphabet::{Alphabet, PhoneList, Spoken, UnknownAlphabet};
 pub use check::{Warning, check};
 pub use error::{Fault, LabelError, LineError};
 pub use nearest::nearest;
+pub use note::{Note, Notes};
 pub use phone::{Class, Phone, UnknownCode};
 pub use reader::{
     Match, READERS, ReadOptions, Reader, Source, detect, read, read_file, read_from, reader,

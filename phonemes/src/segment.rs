@@ -4,7 +4,7 @@
 
 use serde::{Deserialize, Serialize};
 
-use crate::Phone;
+use crate::{Note, Phone};
 
 /// Stress of the syllable that a phone belongs to, as the CMU dictionary marks it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize, Deserialize)]
@@ -73,6 +73,9 @@ pub struct Labels {
     /// Words in order of their start, where the source has them.
     #[serde(default)]
     pub words: Vec<Word>,
+    /// What the reader had to guess or change.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub notes: Vec<Note>,
 }
 
 impl Labels {

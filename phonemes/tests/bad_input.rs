@@ -225,7 +225,7 @@ fn what_cannot_be_written_is_refused() {
             .iter()
             .map(|(start, end)| Segment::new(Phone::Aa, *start, *end))
             .collect(),
-        words: Vec::new(),
+        ..Labels::default()
     };
     for spans in [&[(-3, 3)][..], &[(0, 1)], &[(3, 3)], &[(0, 30), (27, 60)]] {
         let error = write("timit", &phones(spans)).unwrap_err();
@@ -235,12 +235,12 @@ fn what_cannot_be_written_is_refused() {
     assert!(matches!(nothing, WriteError::Nothing("phones")));
     for text in ["", " a", "a\nb", &"a".repeat(2000)] {
         let words = Labels {
-            segments: Vec::new(),
             words: vec![Word {
                 text: text.to_owned(),
                 start: 0,
                 end: 30,
             }],
+            ..Labels::default()
         };
         assert!(write("timit-words", &words).is_err(), "{text:?}");
     }

@@ -102,7 +102,7 @@ proptest! {
             at = start + length;
             Segment::new(*phone, start, at)
         });
-        let labels = Labels { segments: segments.collect(), words: Vec::new() };
+        let labels = Labels { segments: segments.collect(), ..Labels::default() };
         let text = written("timit", &labels, rate);
         let source = Source { name: "a.PHN", bytes: text.as_bytes() };
         prop_assert_eq!(read(&source, None, &ReadOptions::at(rate)).unwrap(), labels);
@@ -117,7 +117,7 @@ proptest! {
             at += 3 * step;
             Word { text, start: at, end: at + 3 * length }
         });
-        let labels = Labels { segments: Vec::new(), words: words.collect() };
+        let labels = Labels { words: words.collect(), ..Labels::default() };
         let text = written("timit-words", &labels, SampleRate::TIMIT);
         let source = Source { name: "a.WRD", bytes: text.as_bytes() };
         prop_assert_eq!(read(&source, None, &ReadOptions::default()).unwrap(), labels);

@@ -40,7 +40,7 @@ impl Reader for Phones {
         let mut order = Order::default();
         Ok(Labels {
             segments: gather(source, |text| phone(text, options.rate, &mut order))?,
-            words: Vec::new(),
+            ..Labels::default()
         })
     }
 }

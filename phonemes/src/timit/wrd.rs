@@ -43,8 +43,8 @@ impl Reader for Words {
     fn read(&self, source: &Source<'_>, options: &ReadOptions) -> Result<Labels, LabelError> {
         let mut order = Order::default();
         Ok(Labels {
-            segments: Vec::new(),
             words: gather(source, |text| word(text, options.rate, &mut order))?,
+            ..Labels::default()
         })
     }
 }
