@@ -22,8 +22,8 @@ const LESS_IN_FRONT: f32 = 0.20;
 const SUNK_MM: f32 = 1.3;
 const OUT_MM: f32 = 5.0;
 /// How much light reaches it where hair is long, and where it is short; and less of it over the forehead.
-const LIGHT: [f32; 2] = [0.72, 0.92];
-const DARKER_IN_FRONT: f32 = 0.24;
+const LIGHT: [f32; 2] = [0.82, 0.92];
+const DARKER_IN_FRONT: f32 = 0.32;
 /// How far columns turn back from the temples to the nape, rad, and between which angles from straight up.
 const SWEEP: f32 = 0.62;
 const SWEPT: [f32; 2] = [0.95, 1.85];
