@@ -11,6 +11,7 @@ mod values;
 use std::path::PathBuf;
 
 use clap::{ArgAction, Args, Parser, Subcommand, ValueEnum};
+use mouthpiece_phonemes::Alphabet;
 use mouthpiece_render::{Camera, Tier, View};
 use mouthpiece_rig::{Anatomy, TissueModel};
 
@@ -153,6 +154,12 @@ pub struct InputArgs {
     #[arg(long, value_name = "HZ", default_value_t = 16_000,
           value_parser = clap::value_parser!(u32).range(1..=768_000))]
     pub label_rate: u32,
+    /// Alphabet of the labels, where their format leaves it open [default: by their symbols]
+    #[arg(long, value_name = "A", value_parser = values::alphabet())]
+    pub alphabet: Option<Alphabet>,
+    /// The tier to read of a TextGrid, by its name or its number from 1 [default: phones, else words]
+    #[arg(long, value_name = "NAME")]
+    pub tier: Option<String>,
 }
 
 /// What the face shows besides what it says.
@@ -248,7 +255,8 @@ pub struct CurvesArgs {
 /// Read a label file, check it, and write it as another
 #[derive(Debug, Args)]
 #[command(
-    after_help = "Examples:\n  mouthpiece labels hello.phn\n  mouthpiece labels hello.phn --json\n  mouthpiece labels hello48k.phn --rate 48000 -o hello.phn"
+    after_help = "Examples:\n  mouthpiece labels hello.phn\n  mouthpiece labels hello.phn --json\n  mouthpiece labels hello48k.phn --rate 48000 -o hello.phn\n  \
+                  mouthpiece labels hello.TextGrid --tier phones --alphabet ipa --to xlabel -o hello.lab"
 )]
 pub struct LabelsArgs {
     /// The label file, `-` for standard input
@@ -257,8 +265,14 @@ pub struct LabelsArgs {
     /// Its format [default: by its name and content]
     #[arg(long, value_name = "FMT", value_parser = values::label_formats())]
     pub from: Option<String>,
+    /// Alphabet of its phones, where its format leaves it open [default: by its symbols]
+    #[arg(long, value_name = "A", value_parser = values::alphabet())]
+    pub alphabet: Option<Alphabet>,
+    /// The tier to read of a TextGrid, by its name or its number from 1 [default: phones, else words]
+    #[arg(long, value_name = "NAME")]
+    pub tier: Option<String>,
     /// The format to write [default: TIMIT]
-    #[arg(long, value_name = "FMT", value_parser = values::label_formats())]
+    #[arg(long, value_name = "FMT", value_parser = values::written_formats())]
     pub to: Option<String>,
     /// Times in the file are counted at this rate, where its format counts samples
     #[arg(long, value_name = "HZ", default_value_t = 16_000,

@@ -15,6 +15,9 @@ use crate::media::wav;
 const DEMO_LABELS: &[u8] = include_bytes!("../../tests/fixtures/demo.PHN");
 const DEMO_SOUND: &[u8] = include_bytes!("../../tests/fixtures/demo.wav");
 
+/// The format that stands for any: found by name and content.
+pub const AUTO: &str = "auto";
+
 /// Longest utterance: as long as the longest sound.
 const TICKS_MAX: i64 = wav::SECONDS_MAX as i64 * TICK_RATE;
 
@@ -35,7 +38,10 @@ impl Utterance {
         let rate = SampleRate::new(args.label_rate)?;
         let (name, labels, sound) = match &args.labels {
             Some(path) => {
-                let labels = read_labels(path, args.from.as_deref(), rate)?;
+                let mut options = ReadOptions::at(rate);
+                options.alphabet = args.alphabet;
+                options.tier = args.tier.clone();
+                let labels = read_labels(path, args.from.as_deref(), &options)?;
                 let sound = args.audio.as_deref().map(wav::read).transpose()?;
                 (path.display().to_string(), labels, sound)
             }
@@ -61,6 +67,8 @@ impl Utterance {
             demo: true,
             from: None,
             label_rate: 16_000,
+            alphabet: None,
+            tier: None,
         })
     }
 
@@ -97,12 +105,16 @@ impl Utterance {
 }
 
 /// Reads a label file, `-` for standard input.
-pub fn read_labels(path: &Path, from: Option<&str>, rate: SampleRate) -> anyhow::Result<Labels> {
-    let options = ReadOptions::at(rate);
+pub fn read_labels(
+    path: &Path,
+    from: Option<&str>,
+    options: &ReadOptions,
+) -> anyhow::Result<Labels> {
+    let from = from.filter(|from| *from != AUTO);
     let labels = if path == Path::new("-") {
-        mouthpiece_phonemes::read_from("<stdin>", io::stdin().lock(), from, &options)
+        mouthpiece_phonemes::read_from("<stdin>", io::stdin().lock(), from, options)
     } else {
-        mouthpiece_phonemes::read_file(path, from, &options)
+        mouthpiece_phonemes::read_file(path, from, options)
     };
     Ok(labels?)
 }

@@ -2,7 +2,7 @@
 
 use std::path::Path;
 
-use mouthpiece_phonemes::{SampleRate, TICK_RATE, Writer as _, check, timit, writer};
+use mouthpiece_phonemes::{ReadOptions, SampleRate, TICK_RATE, Writer as _, check, timit, writer};
 use serde_json::json;
 
 use crate::cli::LabelsArgs;
@@ -11,11 +11,10 @@ use crate::media::output;
 
 /// Runs the command.
 pub fn run(args: &LabelsArgs) -> anyhow::Result<()> {
-    let labels = read_labels(
-        &args.file,
-        args.from.as_deref(),
-        SampleRate::new(args.rate)?,
-    )?;
+    let mut options = ReadOptions::at(SampleRate::new(args.rate)?);
+    options.alphabet = args.alphabet;
+    options.tier = args.tier.clone();
+    let labels = read_labels(&args.file, args.from.as_deref(), &options)?;
     let name = match &args.file {
         path if path == Path::new("-") => "<stdin>".into(),
         path => path.display().to_string(),

@@ -12,7 +12,7 @@ use std::path::Path;
 use crate::error::LabelError;
 use crate::limits::FILE_BYTES_MAX;
 use crate::tick::SampleRate;
-use crate::{Labels, timit};
+use crate::{Alphabet, Labels, timit};
 
 /// Every format that can be read, most telling first.
 pub static READERS: [&dyn Reader; 2] = [&timit::Phones, &timit::Words];
@@ -35,25 +35,31 @@ impl Source<'_> {
 }
 
 /// What a file itself does not say. Formats take from it what they need.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Debug)]
 #[non_exhaustive]
 pub struct ReadOptions {
     /// What the numbers count, in formats that count samples.
     pub rate: SampleRate,
+    /// What phones are written in, in formats that leave it open; `None` goes by the symbols.
+    pub alphabet: Option<Alphabet>,
+    /// Which tier to read, by its name or its number from 1, in formats that have tiers.
+    pub tier: Option<String>,
 }
 
 impl Default for ReadOptions {
     fn default() -> Self {
-        Self {
-            rate: SampleRate::TIMIT,
-        }
+        Self::at(SampleRate::TIMIT)
     }
 }
 
 impl ReadOptions {
     /// The defaults, with samples counted at another rate.
     pub fn at(rate: SampleRate) -> Self {
-        Self { rate }
+        Self {
+            rate,
+            alphabet: None,
+            tier: None,
+        }
     }
 }
 

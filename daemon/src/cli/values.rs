@@ -3,8 +3,11 @@
 use std::fmt;
 use std::str::FromStr;
 
-use clap::builder::{PossibleValue, PossibleValuesParser};
+use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser};
+use mouthpiece_phonemes::{Alphabet, READERS, WRITERS};
 use mouthpiece_rig::{STEP_TICKS, TICK_RATE};
+
+use crate::input::AUTO;
 
 /// Width and height in pixels.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -171,8 +174,21 @@ impl FromStr for Rgb {
 
 /// The label formats that can be read, by name.
 pub fn label_formats() -> PossibleValuesParser {
-    let formats = mouthpiece_phonemes::READERS.iter();
-    PossibleValuesParser::new(formats.map(|r| PossibleValue::new(r.name()).help(r.about())))
+    let formats = READERS.iter();
+    let auto = PossibleValue::new(AUTO).help("any of these, found by name and content");
+    let formats = formats.map(|r| PossibleValue::new(r.name()).help(r.about()));
+    PossibleValuesParser::new([auto].into_iter().chain(formats))
+}
+
+/// The label formats that can be written, by name.
+pub fn written_formats() -> PossibleValuesParser {
+    PossibleValuesParser::new(WRITERS.iter().map(|w| PossibleValue::new(w.name())))
+}
+
+/// The alphabets that phones can be written in, by name.
+pub fn alphabet() -> impl TypedValueParser<Value = Alphabet> {
+    let all = Alphabet::ALL.map(|a| PossibleValue::new(a.name()).help(a.about()));
+    PossibleValuesParser::new(all).try_map(|name| name.parse::<Alphabet>())
 }
 
 /// Bits a second: a number, with `k` or `M` behind it.
