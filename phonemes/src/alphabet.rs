@@ -7,16 +7,32 @@
 //!
 //! | module | holds |
 //! |---|---|
-//! | `codes` | TIMIT, ARPAbet and flite's and festival's radio codes |
+//! | `codes` | TIMIT, ARPAbet and flite's and festival's radio codes; marks of silence |
+//! | `ipa` | the International Phonetic Alphabet |
+//! | `letters` | its letters |
+//! | `xsampa` | X-SAMPA, by the IPA that it stands for |
+//! | `espeak` | espeak-ng's mnemonics, in the same way |
+//! | `features` | how sounds are made, and which phone is closest |
+//! | `join` | segments of labels, one by one or as a stream of letters |
+//! | `guess` | which alphabet a list of symbols is in |
 
 mod codes;
+mod espeak;
+mod features;
+mod guess;
+mod ipa;
+mod join;
+mod letters;
+mod xsampa;
 
 use std::ops::Deref;
 use std::str::FromStr;
 
 use thiserror::Error;
 
-use crate::{Phone, Segment, Stress};
+pub use join::{Timed, join, segments};
+
+use crate::{Phone, Stress};
 
 /// A way to write phones.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
@@ -159,33 +175,36 @@ impl Alphabet {
     /// The phones of a symbol. Never fails: what is unknown goes to the nearest phone.
     pub fn spoken(self, symbol: &str) -> Spoken {
         let symbol = symbol.trim();
+        if let Some(pause) = codes::pause(symbol) {
+            return pause;
+        }
         let found = match self {
             Self::Timit => codes::timit(symbol),
             Self::Arpabet => codes::arpabet(symbol),
             Self::Radio => codes::radio(symbol),
-            Self::Ipa | Self::XSampa | Self::Espeak => None,
+            Self::Ipa => ipa::ipa(symbol),
+            Self::XSampa => xsampa::xsampa(symbol),
+            Self::Espeak => espeak::espeak(symbol),
         };
-        found.or_else(|| codes::pause(symbol)).unwrap_or_else(|| {
-            let mut phones = Phone::ALL.into_iter();
-            let same = phones.find(|p| !p.ipa().is_empty() && p.ipa() == symbol);
-            Spoken {
-                exact: same.is_some(),
-                ..Spoken::exactly(same.unwrap_or(Phone::Ax))
-            }
-        })
+        found.unwrap_or_else(|| nearest(symbol))
     }
 
-    /// The alphabet that most of the symbols fit.
+    /// The alphabet that most of the symbols fit; TIMIT where none does.
     pub fn guess<'a>(symbols: impl IntoIterator<Item = &'a str>) -> Self {
-        let mut counts = [0_u32; Self::ALL.len()];
-        for symbol in symbols {
-            for (count, alphabet) in counts.iter_mut().zip(Self::ALL) {
-                *count += u32::from(alphabet.spoken(symbol).exact);
-            }
-        }
-        let best = counts.iter().max().copied().unwrap_or(0);
-        let at = counts.iter().position(|c| *c == best).unwrap_or(0);
-        Self::ALL[at]
+        guess::guess(symbols)
+    }
+}
+
+/// What a symbol that its own alphabet does not know is like: another code, codes in a row, letters
+/// by their sound; or a noise.
+fn nearest(symbol: &str) -> Spoken {
+    let other = || codes::timit(symbol).or_else(|| codes::arpabet(symbol));
+    let found = other()
+        .or_else(|| codes::spelled(symbol))
+        .or_else(|| ipa::ipa(symbol));
+    Spoken {
+        exact: false,
+        ..found.unwrap_or(Spoken::exactly(Phone::Pau))
     }
 }
 
@@ -196,33 +215,4 @@ impl FromStr for Alphabet {
         let found = Self::ALL.into_iter().find(|a| a.name() == name);
         found.ok_or_else(|| UnknownAlphabet(name.to_owned()))
     }
-}
-
-/// Adds the segments of one label from `start` to `end`, whose time its phones share, and says
-/// what was made of the symbol. A label too short to share goes to its first phones; one without
-/// any time adds nothing.
-pub fn segments(
-    alphabet: Alphabet,
-    symbol: &str,
-    start: i64,
-    end: i64,
-    out: &mut Vec<Segment>,
-) -> Spoken {
-    let spoken = alphabet.spoken(symbol);
-    let ticks = end.saturating_sub(start).max(0);
-    let count = spoken.phones.len() as i64;
-    let mut at = start;
-    for (done, phone) in (1..).zip(spoken.phones.iter()) {
-        let until = start + ticks * done / count;
-        if until > at {
-            out.push(Segment {
-                phone: *phone,
-                start: at,
-                end: until,
-                stress: spoken.stress,
-            });
-            at = until;
-        }
-    }
-    spoken
 }

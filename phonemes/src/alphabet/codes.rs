@@ -9,7 +9,7 @@ use super::{PhoneList, Spoken};
 use crate::{Phone, Stress};
 
 /// Marks for silence, breath and noise in all kinds of label files.
-const PAUSES: [(&str, Phone); 32] = [
+const PAUSES: [(&str, Phone); 33] = [
     ("", Phone::Pau),
     ("sil", Phone::Pau),
     ("silence", Phone::Pau),
@@ -18,6 +18,7 @@ const PAUSES: [(&str, Phone); 32] = [
     ("<sp>", Phone::Pau),
     ("ssil", Phone::Pau),
     ("spn", Phone::Pau),
+    ("||", Phone::Pau),
     ("nsn", Phone::Pau),
     ("pau", Phone::Pau),
     ("<p:>", Phone::Pau),
@@ -63,9 +64,18 @@ pub(super) fn timit(symbol: &str) -> Option<Spoken> {
     Phone::from_code(&lower(symbol)?).map(Spoken::exactly)
 }
 
+/// Where in its word a phone is, as Kaldi marks it: begin, inside, end, alone.
+const PLACES: [&str; 4] = ["_b", "_i", "_e", "_s"];
+
 /// ARPAbet, with or without stress.
 pub(super) fn arpabet(symbol: &str) -> Option<Spoken> {
-    let lower = lower(symbol)?;
+    let mut lower = lower(symbol)?;
+    if PLACES.iter().any(|place| lower.ends_with(place)) {
+        lower.truncate(lower.len() - 2);
+    }
+    if let Some(pause) = pause(&lower) {
+        return Some(pause);
+    }
     let bare = lower.trim_end_matches(|c: char| c.is_ascii_digit());
     let stress = match &lower[bare.len()..] {
         "" => None,
@@ -93,24 +103,41 @@ pub(super) fn arpabet(symbol: &str) -> Option<Spoken> {
     })
 }
 
-/// Codes of festival's radio set that TIMIT has under another name or not at all.
-const RADIO: [(&str, &[Phone]); 6] = [
-    ("h", &[Phone::Hh]),
-    ("hv", &[Phone::Hv]),
-    ("em", &[Phone::Em]),
-    ("nx", &[Phone::Nx]),
-    ("ll", &[Phone::L]),
-    ("ii", &[Phone::Iy]),
-];
+/// Festival's radio phones, and `hh`'s other name in some of its lexicons. Those of TIMIT that
+/// are not among them are TIMIT's alone.
+const RADIO: &str = "aa ae ah ao aw ax axr ay b brth ch d dh dx eh el em en er ey f g h# hh hv ih iy \
+     jh k l m n ng nx ow oy p pau r s sh t th uh uw v w y z zh";
+
+/// Whether festival's radio set has this code.
+pub(super) fn is_radio(symbol: &str) -> bool {
+    RADIO.split_whitespace().any(|code| code == symbol)
+}
 
 /// Festival's and flite's codes; HTS labels may carry stress digits too.
 pub(super) fn radio(symbol: &str) -> Option<Spoken> {
+    timit(symbol).or_else(|| arpabet(symbol))
+}
+
+/// An unknown symbol as a row of codes, longest first (`tsh` is `t sh`); `None` unless codes spell
+/// all of it.
+pub(super) fn spelled(symbol: &str) -> Option<Spoken> {
     let lower = lower(symbol)?;
-    if let Some((_, phones)) = RADIO.iter().find(|(code, _)| *code == lower) {
-        return Some(Spoken {
-            phones: PhoneList::of(phones)?,
-            ..Spoken::exactly(Phone::Epi)
-        });
+    let mut rest = lower.trim_end_matches(|c: char| c.is_ascii_digit());
+    let mut phones: Vec<Phone> = Vec::new();
+    while !rest.is_empty() {
+        let ends = (1..=rest.len().min(4))
+            .rev()
+            .filter_map(|end| rest.get(..end));
+        let mut codes = ends.filter_map(|code| Phone::from_code(code).map(|phone| (code, phone)));
+        let (code, phone) = codes.next()?;
+        if phones.last() != Some(&phone) {
+            phones.push(phone);
+        }
+        rest = &rest[code.len()..];
     }
-    timit(&lower).or_else(|| arpabet(&lower))
+    Some(Spoken {
+        phones: PhoneList::of(&phones)?,
+        stress: None,
+        exact: false,
+    })
 }
