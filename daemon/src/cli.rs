@@ -159,7 +159,7 @@ pub struct InputArgs {
     pub alphabet: Option<Alphabet>,
     /// The tier to read of a TextGrid, by its name or its number from 1 [default: phones, else words]
     #[arg(long, value_name = "NAME")]
-    pub tier: Option<String>,
+    pub label_tier: Option<String>,
 }
 
 /// What the face shows besides what it says.
@@ -256,7 +256,7 @@ pub struct CurvesArgs {
 #[derive(Debug, Args)]
 #[command(
     after_help = "Examples:\n  mouthpiece labels hello.phn\n  mouthpiece labels hello.phn --json\n  mouthpiece labels hello48k.phn --rate 48000 -o hello.phn\n  \
-                  mouthpiece labels hello.TextGrid --tier phones --alphabet ipa --to xlabel -o hello.lab"
+                  mouthpiece labels hello.TextGrid --label-tier phones --alphabet ipa --to xlabel -o hello.lab"
 )]
 pub struct LabelsArgs {
     /// The label file, `-` for standard input
@@ -270,7 +270,7 @@ pub struct LabelsArgs {
     pub alphabet: Option<Alphabet>,
     /// The tier to read of a TextGrid, by its name or its number from 1 [default: phones, else words]
     #[arg(long, value_name = "NAME")]
-    pub tier: Option<String>,
+    pub label_tier: Option<String>,
     /// The format to write [default: TIMIT]
     #[arg(long, value_name = "FMT", value_parser = values::written_formats())]
     pub to: Option<String>,

@@ -40,7 +40,7 @@ impl Utterance {
             Some(path) => {
                 let mut options = ReadOptions::at(rate);
                 options.alphabet = args.alphabet;
-                options.tier = args.tier.clone();
+                options.tier = args.label_tier.clone();
                 let labels = read_labels(path, args.from.as_deref(), &options)?;
                 let sound = args.audio.as_deref().map(wav::read).transpose()?;
                 (path.display().to_string(), labels, sound)

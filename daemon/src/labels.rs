@@ -13,7 +13,7 @@ use crate::media::output;
 pub fn run(args: &LabelsArgs) -> anyhow::Result<()> {
     let mut options = ReadOptions::at(SampleRate::new(args.rate)?);
     options.alphabet = args.alphabet;
-    options.tier = args.tier.clone();
+    options.tier = args.label_tier.clone();
     let labels = read_labels(&args.file, args.from.as_deref(), &options)?;
     let name = match &args.file {
         path if path == Path::new("-") => "<stdin>".into(),
