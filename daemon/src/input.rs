@@ -68,7 +68,7 @@ impl Utterance {
             from: None,
             label_rate: 16_000,
             alphabet: None,
-            tier: None,
+            label_tier: None,
         })
     }
 
