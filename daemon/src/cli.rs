@@ -6,6 +6,7 @@
 mod head;
 mod scene;
 mod skin;
+mod text;
 mod values;
 
 use std::path::PathBuf;
@@ -17,6 +18,7 @@ use mouthpiece_rig::{Anatomy, TissueModel};
 
 pub use head::{CalibrateArgs, FitArgs, HeadCommand, InfoArgs, LandmarksArgs};
 pub use scene::{BackgroundArg, SceneArgs};
+pub use text::TextArgs;
 pub use values::{Fps, Size};
 
 /// A real-time, speech-driven talking head: phoneme labels and sound in, a speaking face out.
@@ -70,7 +72,7 @@ pub struct RunArgs {
 /// Speak through the running daemon; without one, in a window of its own
 #[derive(Debug, Args)]
 #[command(
-    after_help = "Examples:\n  mouthpiece say --demo\n  mouthpiece say --labels hello.phn --audio hello.wav\n  my-tts --timings | mouthpiece say --labels - --audio hello.wav"
+    after_help = "Examples:\n  mouthpiece say --demo\n  mouthpiece say --labels hello.phn --audio hello.wav\n  my-tts --timings | mouthpiece say --labels - --audio hello.wav\n  mouthpiece say --text \"Hello there\" --tts espeak-ng"
 )]
 pub struct SayArgs {
     #[command(flatten)]
@@ -139,14 +141,16 @@ impl From<TissueArg> for TissueModel {
 #[derive(Clone, Debug, Args)]
 pub struct InputArgs {
     /// Phoneme labels (TIMIT: `start end phone` a line), `-` for standard input
-    #[arg(long, value_name = "F", required_unless_present = "demo")]
+    #[arg(long, value_name = "F", required_unless_present_any = ["demo", "text"])]
     pub labels: Option<PathBuf>,
-    /// The sound that belongs to the labels: a WAV file
+    /// The sound that belongs to the labels: a WAV or NIST SPHERE file
     #[arg(long, value_name = "F")]
     pub audio: Option<PathBuf>,
     /// The sentence that comes with the program, instead of files
     #[arg(long, conflicts_with_all = ["labels", "audio"])]
     pub demo: bool,
+    #[command(flatten)]
+    pub text: TextArgs,
     /// Format of the labels [default: by their name and content]
     #[arg(long, value_name = "FMT", value_parser = values::label_formats())]
     pub from: Option<String>,
@@ -180,6 +184,8 @@ pub struct MoodArgs {
                   (OUT/) is one picture a frame; - is raw RGBA frames on standard output.\n\n\
                   Examples:\n  mouthpiece export --labels hello.phn --audio hello.wav -o hello.mp4\n  \
                   mouthpiece export --demo --size 1280x720 --fps 29.97 --expression happiness -o demo.mp4\n  \
+                  mouthpiece export --text \"Hello there\" --tts flite --voice rms -o hello.mp4\n  \
+                  mouthpiece export --text \"as it is said there\" --audio hello.wav -o hello.mp4\n  \
                   mouthpiece export --demo --size 640x480 -o - | ffmpeg -f rawvideo -pix_fmt rgba -s 640x480 -r 30 -i - demo.webm"
 )]
 pub struct ExportArgs {

@@ -7,6 +7,7 @@ use cpal::traits::{DeviceTrait as _, HostTrait as _};
 use mouthpiece_render::Gpu;
 
 use crate::media::output;
+use crate::voices;
 
 /// Looks around. Only a missing graphics driver stops the product; all else has a way round.
 pub fn run() -> anyhow::Result<()> {
@@ -15,6 +16,7 @@ pub fn run() -> anyhow::Result<()> {
     sound(&mut text);
     display(&mut text);
     video(&mut text);
+    speech(&mut text);
     output::print(&text)?;
     anyhow::ensure!(
         can_draw,
@@ -133,5 +135,23 @@ fn video(text: &mut String) {
             "",
             format_args!("no ffmpeg: install it for --via-ffmpeg; nothing else needs it"),
         ),
+    }
+}
+
+fn speech(text: &mut String) {
+    line(
+        text,
+        "speech",
+        format_args!("labels and sound of any engine; for --text these are looked for:"),
+    );
+    for engine in voices::found() {
+        match engine.what {
+            Some(what) => line(text, "", format_args!("{}: {what}", engine.name)),
+            None => line(
+                text,
+                "",
+                format_args!("no {}: install it {}", engine.name, engine.install),
+            ),
+        }
     }
 }

@@ -8,8 +8,9 @@ use anyhow::bail;
 use mouthpiece_phonemes::{Labels, ReadOptions, SampleRate, Segment, Warning, check};
 use mouthpiece_rig::TICK_RATE;
 
-use crate::cli::InputArgs;
+use crate::cli::{InputArgs, TextArgs, Usage};
 use crate::media::wav;
+use crate::voices;
 
 /// The sentence of the demo: as any user's, labels at 16 kHz and a WAV.
 const DEMO_LABELS: &[u8] = include_bytes!("../../tests/fixtures/demo.PHN");
@@ -36,6 +37,9 @@ impl Utterance {
     /// Reads what `args` name, and says on stderr what is odd about it.
     pub fn load(args: &InputArgs) -> anyhow::Result<Self> {
         let rate = SampleRate::new(args.label_rate)?;
+        if let Some(text) = &args.text.text {
+            return Self::of_text(text, args);
+        }
         let (name, labels, sound) = match &args.labels {
             Some(path) => {
                 let mut options = ReadOptions::at(rate);
@@ -59,12 +63,37 @@ impl Utterance {
         Self::new(&name, labels, sound.map(|sound| sound.frames))
     }
 
+    /// What an engine makes of a text, or where a text lies in a recording.
+    fn of_text(text: &str, args: &InputArgs) -> anyhow::Result<Self> {
+        let words = &args.text;
+        let spoken = match (words.tts, &args.audio) {
+            (Some(engine), _) => engine.speak(&voices::text(text)?, words.voice.as_deref())?,
+            (None, Some(path)) => {
+                let sound = wav::read(path)?;
+                voices::align(&voices::text(text)?, sound, &path.display().to_string())?
+            }
+            (None, None) => {
+                return Err(Usage(
+                    "--text needs a voice: --tts espeak-ng, flite, festival or piper (`mouthpiece doctor` says \
+                     which are here), or --audio with a recording of the text"
+                        .into(),
+                )
+                .into());
+            }
+        };
+        for note in &spoken.labels.notes {
+            tracing::warn!("{}: {note}", spoken.name);
+        }
+        Self::new(&spoken.name, spoken.labels, Some(spoken.sound.frames))
+    }
+
     /// The built-in demo.
     pub fn demo() -> anyhow::Result<Self> {
         Self::load(&InputArgs {
             labels: None,
             audio: None,
             demo: true,
+            text: TextArgs::default(),
             from: None,
             label_rate: 16_000,
             alphabet: None,

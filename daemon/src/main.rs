@@ -8,6 +8,7 @@
 //! | [`export`], [`curves`], [`labels`], [`still`], [`bench`](mod@bench), [`doctor`] | the commands of these names |
 //! | [`head`] | the head shop: `mouthpiece head …` |
 //! | [`live`] | `run` and `say`: window, sound, sockets and the clock |
+//! | [`voices`] | speech engines of this machine, and labels for recordings |
 //! | [`media`] | sound and video files |
 //! | [`interrupt`] | Ctrl-C, for work that ends by itself |
 //! | [`log`] | where log lines go |
@@ -32,6 +33,7 @@ mod log;
 mod media;
 mod pipeline;
 mod still;
+mod voices;
 
 use std::process::ExitCode;
 

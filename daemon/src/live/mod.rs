@@ -39,3 +39,4 @@ mod window;
 static ALLOCATOR: assert_no_alloc::AllocDisabler = assert_no_alloc::AllocDisabler;
 
 pub use commands::{run, say, sync_test};
+pub use sound::resample::Resample;
