@@ -30,6 +30,7 @@ use std::str::FromStr;
 
 use thiserror::Error;
 
+pub(crate) use features::distance;
 pub use join::{Timed, join, segments};
 
 use crate::{Phone, Stress};

@@ -16,6 +16,7 @@
 //! | [`limits`] | how much a file or stream may ask for |
 //! | `lines` | cuts pieces of any size into lines |
 //! | [`alphabet`] | other alphabets' symbols as TIMIT's phones |
+//! | [`pronounce`](mod@pronounce) | how written words sound, and when within them each phone does |
 //! | `note` | what a reader had to guess |
 //! | `nearest` | which code an unknown one resembles |
 
@@ -29,6 +30,7 @@ mod lines;
 mod nearest;
 mod note;
 mod phone;
+pub mod pronounce;
 mod reader;
 mod segment;
 mod tick;
@@ -41,6 +43,7 @@ pub use error::{Fault, LabelError, LineError};
 pub use nearest::nearest;
 pub use note::{Note, Notes};
 pub use phone::{Class, Phone, UnknownCode};
+pub use pronounce::{pronounce, spread};
 pub use reader::{
     Match, READERS, ReadOptions, Reader, Source, detect, read, read_file, read_from, reader,
 };

@@ -7,7 +7,7 @@
 
 use unicode_normalization::UnicodeNormalization;
 
-use super::letters::letter;
+use super::letters::{Letter, letter};
 use super::{PhoneList, Spoken};
 use crate::{Phone, Stress};
 
@@ -231,7 +231,7 @@ impl Unit {
             // Long and open, as in British "bath" or German "Bahn".
             'a' if self.long => Phone::Aa,
             'e' if self.long => Phone::Ey,
-            other => return letter(other).map_or((Phone::Ax, false), |letter| letter.phone()),
+            other => return letter(other).map_or((Phone::Ax, false), Letter::phone),
         };
         (exact, true)
     }

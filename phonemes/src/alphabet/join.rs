@@ -105,11 +105,11 @@ pub fn join(alphabet: Alphabet, symbols: &[Timed<'_>], out: &mut Vec<Segment>, n
             stress = None;
         }
         if let Some(label) = done.replace(next) {
-            finish(alphabet, label, out, notes);
+            finish(alphabet, &label, out, notes);
         }
     }
     if let Some(label) = done {
-        finish(alphabet, label, out, notes);
+        finish(alphabet, &label, out, notes);
     }
 }
 
@@ -127,7 +127,7 @@ fn longer(alphabet: Alphabet, label: &Label, symbol: &str, mark: bool) -> Option
     one.then_some(text)
 }
 
-fn finish(alphabet: Alphabet, label: Label, out: &mut Vec<Segment>, notes: &mut Notes) {
+fn finish(alphabet: Alphabet, label: &Label, out: &mut Vec<Segment>, notes: &mut Notes) {
     let start = out
         .last()
         .map_or(label.start, |last| label.start.max(last.end));

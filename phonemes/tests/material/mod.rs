@@ -13,6 +13,7 @@ fn folder() -> Option<PathBuf> {
 }
 
 /// A file's text; `None`, with a printed reason, where there is no material.
+#[allow(dead_code, reason = "not every test file wants both")]
 pub(crate) fn text(file: &str) -> Option<String> {
     let read = folder().and_then(|folder| std::fs::read_to_string(folder.join(file)).ok());
     if read.is_none() {
@@ -22,6 +23,7 @@ pub(crate) fn text(file: &str) -> Option<String> {
 }
 
 /// The phone symbols of a file, found without the readers under test.
+#[allow(dead_code, reason = "not every test file wants both")]
 pub(crate) fn symbols(file: &str, text: &str) -> Vec<String> {
     let owned = |field: Option<&str>| field.unwrap_or_default().to_owned();
     let lines = text.lines();

@@ -1,0 +1,254 @@
+//! Guards how words sound and where their phones fall: real sentences against the CMU dictionary's
+//! phones, times of words and of characters, a user's dictionary; and that no text makes it fail.
+
+mod material;
+
+use mouthpiece_phonemes::pronounce::{Character, Pronouncer, Said, spread_characters};
+use mouthpiece_phonemes::{Phone, Segment, Stress, TICK_RATE, Word, pronounce, spread};
+use proptest::prelude::*;
+
+fn codes(said: &[Said]) -> String {
+    let codes: Vec<&str> = said.iter().map(|(phone, _)| phone.code()).collect();
+    codes.join(" ")
+}
+
+fn sentence(text: &str) -> String {
+    let words = text.split(' ').map(|word| codes(&pronounce(word)));
+    words
+        .filter(|word| !word.is_empty())
+        .collect::<Vec<_>>()
+        .join(" | ")
+}
+
+#[test]
+fn sentences_sound_as_the_cmu_dictionary_says() {
+    for (text, phones) in [
+        (
+            "She had your dark suit in greasy wash water all year.",
+            "sh iy | hh ae d | y ao r | d aa r k | s uw t | ix n | g r iy s iy | w aa sh | w ao t axr | ao l | y ih r",
+        ),
+        (
+            "“Don't ask me to carry an oily rag like that,” Dr. Brown said — 3 times!",
+            "d ow n t | ae s k | m iy | t uw | k ae r iy | ae n | oy l iy | r ae g | l ay k | dh ae t | d aa k t axr | b r aw n | s eh d | th r iy | t ay m z",
+        ),
+        // No common word: with an ending, of two, by rule.
+        (
+            "The mouthpiece's phonemes mumbled: blorp.",
+            "dh ax | m aw th p iy s ix z | f ow n iy m z | m ah m b ax l d | b l ao r p",
+        ),
+        (
+            "In 1990 the BBC paid $2.50.",
+            "ix n | n ay n t iy n n ay n t iy | dh ax | b iy b iy s iy | p ey d | t uw d aa l axr z f ih f t iy s eh n t s",
+        ),
+    ] {
+        assert_eq!(sentence(text), phones, "{text}");
+    }
+}
+
+#[test]
+fn every_word_that_has_a_vowel_has_one_main_stress() {
+    for word in [
+        "banana",
+        "photography",
+        "snowman",
+        "blorp",
+        "Tchaikovsky",
+        "zzz",
+        "McDonald",
+        "b",
+    ] {
+        let said = pronounce(word);
+        assert!(!said.is_empty(), "{word}");
+        let vowel = said.iter().any(|(phone, _)| phone.is_vowel());
+        let main = said.iter().filter(|s| s.1 == Some(Stress::Primary)).count();
+        assert_eq!(main, usize::from(vowel), "{word}: {said:?}");
+    }
+}
+
+#[test]
+fn words_in_other_scripts_move_the_mouth_too() {
+    assert_eq!(codes(&pronounce("Müller")), codes(&pronounce("muller")));
+    assert_eq!(codes(&pronounce("мама")), "m aa m aa");
+    assert_eq!(codes(&pronounce("νέα")), "n eh aa");
+    for word in ["東京", "नमस्ते", "שלום", "مرحبا", "한국", "ở"] {
+        let said = pronounce(word);
+        assert!(
+            said.iter().any(|(phone, _)| phone.is_vowel()),
+            "{word}: {said:?}"
+        );
+        assert!(
+            !said.iter().any(|(phone, _)| phone.is_bilabial()),
+            "{word}: {said:?}"
+        );
+    }
+}
+
+#[test]
+fn a_users_dictionary_goes_first() {
+    let mut pronouncer = Pronouncer::new();
+    let notes = pronouncer.add_dictionary("BOB  B OW1 B\nmouthpiece  B IY1 P\n");
+    assert_eq!(notes, []);
+    assert_eq!(codes(&pronouncer.pronounce("Bob,")), "b ow b");
+    assert_eq!(codes(&pronouncer.pronounce("mouthpiece")), "b iy p");
+    assert_eq!(codes(&pronouncer.pronounce("cat")), "k ae t");
+}
+
+fn word(text: &str, start: i64, end: i64) -> Word {
+    Word {
+        text: text.to_owned(),
+        start,
+        end,
+    }
+}
+
+fn shown(segments: &[Segment]) -> String {
+    let each = segments
+        .iter()
+        .map(|s| format!("{} {}-{}", s.phone, s.start, s.end));
+    each.collect::<Vec<_>>().join(", ")
+}
+
+#[test]
+fn phones_fill_their_words_and_no_more() {
+    let words = [
+        word("bob", 0, 14_400),
+        // A comma, a word without time, and one that overlaps.
+        word(",", 14_400, 20_000),
+        word("a", 20_000, 20_000),
+        word("may", 14_000, 28_800),
+        // A source that counts the pause into the word.
+        word("be", 28_800, 28_800 + 3 * TICK_RATE),
+    ];
+    let segments = spread(&words);
+    let at = |phone: Phone| segments.iter().find(|s| s.phone == phone).unwrap();
+    assert_eq!(segments[0].start, 0);
+    assert_eq!(segments[2].end, 14_400);
+    assert_eq!(at(Phone::M).start, 14_400, "{}", shown(&segments));
+    assert_eq!(at(Phone::Ey).end, 28_800);
+    assert_eq!(at(Phone::Ey).stress, Some(Stress::Primary));
+    let pause = at(Phone::Pau);
+    assert_eq!(pause.end, 28_800 + 3 * TICK_RATE);
+    assert!(pause.start < 28_800 + TICK_RATE, "{}", shown(&segments));
+    // The vowel has more of the time than a consonant.
+    assert!(at(Phone::Aa).duration() > segments[0].duration());
+}
+
+/// Characters of equal length, `ticks` each.
+fn typed(text: &str, ticks: i64) -> Vec<Character> {
+    let each = (0..).zip(text.chars()).map(|(at, text)| Character {
+        text,
+        start: at * ticks,
+        end: (at + 1) * ticks,
+    });
+    each.collect()
+}
+
+#[test]
+fn phones_begin_with_the_letters_that_write_them() {
+    let labels = spread_characters(&typed("The ship's made. 42", 1000));
+    let words: Vec<&str> = labels.words.iter().map(|w| w.text.as_str()).collect();
+    assert_eq!(words, ["The", "ship's", "made", "42"]);
+    assert_eq!(
+        shown(&labels.segments[..9]),
+        "dh 0-2000, ax 2000-3000, sh 4000-6000, ih 6000-7000, p 7000-9000, s 9000-10000, \
+         m 11000-12000, ey 12000-13000, d 13000-15000"
+    );
+    // The full stop is silent; a number has all of its own time.
+    assert_eq!(labels.segments[9].start, 17_000);
+    assert_eq!(labels.segments.last().unwrap().end, 19_000);
+}
+
+#[test]
+fn phones_of_one_letter_share_its_time() {
+    let labels = spread_characters(&typed("box", 3000));
+    let parts: Vec<&str> = labels.segments.iter().map(|s| s.phone.code()).collect();
+    assert_eq!(parts, ["b", "aa", "k", "s"]);
+    let (k, s) = (labels.segments[2], labels.segments[3]);
+    assert_eq!((k.start, s.end), (6000, 9000));
+    assert_eq!(k.end, s.start);
+}
+
+/// Words and phones that an aligner found in a recording: when only the words are given, phones
+/// must fall near to where it heard them.
+#[test]
+fn phones_fall_near_where_an_aligner_heard_them() {
+    let (Some(words), Some(segs)) = (
+        material::text("generated_formats/s1.festival.words"),
+        material::text("generated_formats/s1.festival.lab"),
+    ) else {
+        return;
+    };
+    let ends = |text: &str| -> Vec<(i64, String)> {
+        let rows = text.lines().filter_map(|line| {
+            let mut fields = line.split_whitespace();
+            let end: f64 = fields.next()?.parse().ok()?;
+            Some(((end * 48_000.0).round() as i64, fields.nth(1)?.to_owned()))
+        });
+        rows.collect()
+    };
+    let segs = ends(&segs);
+    // A word starts where the one before it ends, but for the pause in front.
+    let pauses = |end: i64| segs.iter().any(|s| s.0 == end && s.1 == "pau");
+    let mut at = segs[0].0;
+    let mut given = Vec::new();
+    for (end, text) in ends(&words) {
+        let pause = segs.iter().find(|s| s.0 > at && s.0 < end && s.1 == "pau");
+        let start = pause.map_or(at, |pause| pause.0);
+        assert!(start == at || pauses(start));
+        given.push(word(&text, start, end));
+        at = end;
+    }
+    let found = spread(&given);
+    let mut heard = segs.iter().filter(|s| s.1 != "pau").peekable();
+    let mut errors = Vec::new();
+    for segment in found.iter().filter(|s| !s.phone.is_silence()) {
+        if let Some(next) = heard.next() {
+            errors.push((segment.end - next.0).abs());
+        }
+    }
+    let mean = errors.iter().sum::<i64>() / errors.len() as i64;
+    println!("ends of phones differ by {} ms on average", mean / 48);
+    assert!(mean < 40 * 48, "{} ms", mean / 48);
+}
+
+proptest! {
+    #[test]
+    fn any_words_at_any_times_give_phones_in_order(
+        words in prop::collection::vec(("\\PC{0,20}|[A-Za-z0-9$%.,:'-]{0,12}", -100_000_i64..100_000, -10_i64..50_000), 0..12),
+    ) {
+        let words: Vec<Word> = words.iter().map(|(text, start, ticks)| word(text, *start, start + ticks)).collect();
+        let segments = spread(&words);
+        for pair in segments.windows(2) {
+            prop_assert!(pair[0].end <= pair[1].start);
+        }
+        for segment in &segments {
+            prop_assert!(segment.start < segment.end);
+            prop_assert!(words.iter().any(|w| w.start <= segment.start && segment.end <= w.end));
+        }
+    }
+
+    #[test]
+    fn any_characters_at_any_times_give_phones_in_order(
+        characters in prop::collection::vec((prop::sample::select("ab eioxpst'.-$7é東м,\n".chars().collect::<Vec<_>>()), -5_i64..3000, -3_i64..2000), 0..40),
+    ) {
+        let mut at = 0;
+        let characters: Vec<Character> = characters.iter().map(|(text, step, ticks)| {
+            at += step;
+            Character { text: *text, start: at, end: at + ticks }
+        }).collect();
+        let labels = spread_characters(&characters);
+        for pair in labels.segments.windows(2) {
+            prop_assert!(pair[0].end <= pair[1].start);
+        }
+        for segment in &labels.segments {
+            prop_assert!(segment.start < segment.end);
+        }
+    }
+
+    #[test]
+    fn any_dictionary_can_be_added(text in "(\\PC{0,30}\n){0,10}|([a-z(2)]{1,6}[ \t]+([A-Z]{1,2}[0-2]? ?){0,5}\r?\n){0,10}") {
+        let mut pronouncer = Pronouncer::new();
+        pronouncer.add_dictionary(&text);
+        pronouncer.pronounce("bob");
+    }
+}
