@@ -62,6 +62,16 @@ pub enum LabelError {
         /// The formats that can be read.
         known: String,
     },
+    /// The user asked for a tier that the file lacks.
+    #[error("{file}: has no tier `{tier}` of intervals; name one of {known}")]
+    NoTier {
+        /// The file as the user named it.
+        file: String,
+        /// What was asked for.
+        tier: String,
+        /// The tiers that can be read.
+        known: String,
+    },
     /// The user asked for a format that does not exist.
     #[error("`{name}` is no label format; give one of {known}")]
     UnknownFormat {
@@ -135,6 +145,44 @@ pub enum Fault {
         start: i64,
         /// The previous label's end.
         previous: i64,
+    },
+    /// A time that is no number.
+    #[error("`{}` is no time; write {unit}", clip(.text))]
+    NotTime {
+        /// What stands there.
+        text: String,
+        /// What should.
+        unit: &'static str,
+    },
+    /// A time after any sound, in a format that does not count samples.
+    #[error("time {} lies beyond 24 hours; check its unit", clip(.0))]
+    Beyond(String),
+    /// Ends before it starts, in a format that does not count samples.
+    #[error("ends at {} but starts at {}; put the end after the start", clip(.end), clip(.start))]
+    Backwards {
+        /// The start, as written.
+        start: String,
+        /// The end, as written.
+        end: String,
+    },
+    /// Something else than the format has in this place.
+    #[error("`{}` stands where {wanted} should; mend the line, or name another format", clip(.found))]
+    Shape {
+        /// What stands there.
+        found: String,
+        /// What should.
+        wanted: &'static str,
+    },
+    /// The file is over too soon.
+    #[error("the file ends where {0} should stand; save it again, whole")]
+    Ends(&'static str),
+    /// JSON that is broken, or is not the format's.
+    #[error("not the JSON of this format ({reason}); write {wanted}")]
+    Json {
+        /// What is wrong.
+        reason: String,
+        /// What should stand there.
+        wanted: &'static str,
     },
     /// No such phone.
     #[error("`{}` is not a TIMIT phone code; write one, such as {}", clip(.0), listed(.0))]

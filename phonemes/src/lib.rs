@@ -11,6 +11,7 @@
 //! | `reader` | where label formats are chosen and read |
 //! | `writer` | the same for writing |
 //! | [`timit`] | `.PHN` and `.WRD`, as files and as streams |
+//! | [`formats`] | the label formats of other programs, and our NDJSON |
 //! | `check` | what is odd about labels that can be used |
 //! | `error` | what is wrong with those that cannot |
 //! | [`limits`] | how much a file or stream may ask for |
@@ -25,6 +26,7 @@
 pub mod alphabet;
 mod check;
 mod error;
+pub mod formats;
 pub mod limits;
 mod lines;
 mod nearest;

@@ -12,10 +12,28 @@ use std::path::Path;
 use crate::error::LabelError;
 use crate::limits::FILE_BYTES_MAX;
 use crate::tick::SampleRate;
-use crate::{Alphabet, Labels, timit};
+use crate::{Alphabet, Labels, formats, timit};
 
 /// Every format that can be read, most telling first.
-pub static READERS: [&dyn Reader; 2] = [&timit::Phones, &timit::Words];
+pub static READERS: [&dyn Reader; 17] = [
+    &timit::Phones,
+    &timit::Words,
+    &formats::TextGrid,
+    &formats::Xlabel,
+    &formats::Hts,
+    &formats::Flite,
+    &formats::Mbrola,
+    &formats::Espeak,
+    &formats::Piper,
+    &formats::Gentle,
+    &formats::TiersJson,
+    &formats::Whisper,
+    &formats::Characters,
+    &formats::Azure,
+    &formats::Polly,
+    &formats::Rhubarb,
+    &formats::Ndjson,
+];
 
 /// A label file in memory.
 #[derive(Clone, Copy, Debug)]

@@ -5,10 +5,16 @@ use std::io::{self, Write};
 use thiserror::Error;
 
 use crate::tick::SampleRate;
-use crate::{Labels, timit};
+use crate::{Labels, formats, timit};
 
 /// Every format that can be written.
-pub static WRITERS: [&dyn Writer; 2] = [&timit::Phones, &timit::Words];
+pub static WRITERS: [&dyn Writer; 5] = [
+    &timit::Phones,
+    &timit::Words,
+    &formats::Xlabel,
+    &formats::TextGrid,
+    &formats::Ndjson,
+];
 
 /// Labels that cannot be written, and why.
 #[derive(Debug, Error)]

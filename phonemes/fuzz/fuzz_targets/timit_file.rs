@@ -11,7 +11,7 @@ fuzz_target!(|input: (u32, &[u8])| {
     let name = "fuzzed";
     let rate = SampleRate::new(hz).unwrap_or(SampleRate::TIMIT);
     let options = ReadOptions::at(rate);
-    for reader in READERS {
+    for reader in READERS.iter().filter(|r| r.name().starts_with("timit")) {
         let source = Source { name, bytes };
         reader.detect(&source);
         let labels = match reader.read(&source, &options) {
@@ -26,7 +26,7 @@ fuzz_target!(|input: (u32, &[u8])| {
         for warning in check(&labels, Some(0)) {
             let _ = warning.to_string();
         }
-        round_trip(reader, &labels, rate);
+        round_trip(*reader, &labels, rate);
     }
 });
 

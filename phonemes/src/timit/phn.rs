@@ -8,6 +8,7 @@ use super::line::Order;
 use super::stream::phone;
 use crate::Labels;
 use crate::error::LabelError;
+use crate::formats::hts::counts_100ns;
 use crate::reader::{Match, ReadOptions, Reader, Source};
 use crate::tick::SampleRate;
 use crate::writer::{WriteError, Writer};
@@ -31,7 +32,9 @@ impl Reader for Phones {
         }
         // Some words are spelled like phones, and a file may have a mistake in its first lines.
         match shape(source.bytes) {
-            Some((lines, phones)) if 2 * phones >= lines => Match::Likely,
+            Some((lines, phones)) if 2 * phones >= lines && !counts_100ns(source) => Match::Likely,
+            // Longer than phones are, if these are samples.
+            Some((lines, phones)) if 2 * phones >= lines => Match::Perhaps,
             _ => Match::No,
         }
     }

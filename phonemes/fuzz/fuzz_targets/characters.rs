@@ -1,0 +1,7 @@
+//! Any bytes as a file of the format `characters`.
+
+#![no_main]
+
+mod shared;
+
+libfuzzer_sys::fuzz_target!(|bytes: &[u8]| shared::read("characters", bytes));
