@@ -100,10 +100,29 @@ impl Scene {
                 });
             }
         });
-        for (kept, open) in mesh.occlusion.iter_mut().zip(values) {
+        let lit = between_neighbours(&mesh.triangles, &values);
+        for (kept, open) in mesh.occlusion.iter_mut().zip(lit) {
             *kept *= open;
         }
     }
+}
+
+/// A vertex that lies in a fold too narrow for the mesh sees nothing by itself and would be a black dot: it is lit by
+/// at least this share of what its neighbours are.
+const LEAST_OF_NEIGHBOURS: f32 = 0.75;
+
+fn between_neighbours(triangles: &[[u32; 3]], values: &[f32]) -> Vec<f32> {
+    let mut sums = vec![(0.0_f32, 0.0_f32); values.len()];
+    for t in triangles {
+        for k in 0..3 {
+            let (sum, count) = &mut sums[t[k] as usize];
+            *sum += values[t[(k + 1) % 3] as usize] + values[t[(k + 2) % 3] as usize];
+            *count += 2.0;
+        }
+    }
+    let least = |(sum, count): &(f32, f32)| LEAST_OF_NEIGHBOURS * sum / count.max(1.0);
+    let pairs = values.iter().zip(&sums);
+    pairs.map(|(value, sums)| value.max(least(sums))).collect()
 }
 
 /// Directions over the upper hemisphere, cosine-weighted, z up.

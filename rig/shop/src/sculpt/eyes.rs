@@ -27,7 +27,8 @@ impl Eyes {
 
     /// Both eyeballs.
     pub(super) fn parts(&self) -> Vec<Part> {
-        let (columns, rows) = (40, 22);
+        // Of an eye little is seen, and its cornea is round by the shader: finer rings would be below a pixel.
+        let (columns, rows) = (28, 15);
         let iris = (Self::IRIS_RADIUS / self.radius).asin();
         let left = shapes::outward(shapes::grid(columns, rows, false, |u, v| {
             // From the pupil backwards; closer rings where the cornea bulges.
