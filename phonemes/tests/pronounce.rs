@@ -3,8 +3,12 @@
 
 mod material;
 
+use std::path::Path;
+
 use mouthpiece_phonemes::pronounce::{Character, Pronouncer, Said, spread_characters};
-use mouthpiece_phonemes::{Phone, Segment, Stress, TICK_RATE, Word, pronounce, spread};
+use mouthpiece_phonemes::{
+    Phone, ReadOptions, Segment, Stress, TICK_RATE, Word, pronounce, read_file, spread,
+};
 use proptest::prelude::*;
 
 fn codes(said: &[Said]) -> String {
@@ -209,6 +213,61 @@ fn phones_fall_near_where_an_aligner_heard_them() {
     let mean = errors.iter().sum::<i64>() / errors.len() as i64;
     println!("ends of phones differ by {} ms on average", mean / 48);
     assert!(mean < 40 * 48, "{} ms", mean / 48);
+}
+
+/// A project's utterance, spoken by Piper or espeak-ng, or by a person: its words, and where its
+/// phones were said.
+fn labelled(words: &Path, phones: &Path) -> (Vec<Word>, Vec<Segment>) {
+    let read = |path: &Path| match read_file(path, None, &ReadOptions::default()) {
+        Ok(labels) => labels,
+        Err(error) => panic!("{error}"),
+    };
+    (read(words).words, read(phones).segments)
+}
+
+/// Mean error of the inner ends of phones in words, in ms: as spread, and were all phones alike.
+fn errors((words, heard): &(Vec<Word>, Vec<Segment>)) -> (i64, i64) {
+    let found = spread(words);
+    let (mut count, mut ours, mut alike) = (0, 0, 0);
+    for word in words {
+        let inside = |all: &[Segment]| -> Vec<i64> {
+            let sounds = all
+                .iter()
+                .filter(|s| !s.phone.is_silence() && !s.phone.is_closure());
+            let within = sounds.filter(|s| word.start <= s.start && s.end <= word.end);
+            within.map(|s| s.end).collect()
+        };
+        let (found, heard) = (inside(&found), inside(heard));
+        // Said otherwise than the dictionary has it.
+        if found.len() != heard.len() {
+            continue;
+        }
+        let all = heard.len() as i64;
+        for ((number, heard), found) in (1..all).zip(&heard).zip(&found) {
+            let even = word.start + (word.end - word.start) * number / all;
+            count += 1;
+            ours += (found - heard).abs();
+            alike += (even - heard).abs();
+        }
+    }
+    assert!(count > 5);
+    (ours / count / 48, alike / count / 48)
+}
+
+#[test]
+fn phones_are_placed_better_than_by_equal_shares() {
+    let fixtures = Path::new(env!("CARGO_MANIFEST_DIR")).join("../tests/fixtures");
+    let ours = ["demo", "espeak"].map(|name| {
+        let file = fixtures.join(name);
+        (file.with_extension("WRD"), file.with_extension("PHN"))
+    });
+    let mary = material::path("praatio/mary.TextGrid").map(|file| (file.clone(), file));
+    for (words, phones) in ours.into_iter().chain(mary) {
+        let (spread, alike) = errors(&labelled(&words, &phones));
+        println!("{}: {spread} ms, alike {alike} ms", words.display());
+        assert!(spread < alike, "{}: {spread}, {alike}", words.display());
+        assert!(spread <= 25, "{}: {spread} ms", words.display());
+    }
 }
 
 proptest! {

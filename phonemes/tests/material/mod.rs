@@ -12,18 +12,26 @@ fn folder() -> Option<PathBuf> {
     places.find(|folder| folder.is_dir())
 }
 
-/// A file's text; `None`, with a printed reason, where there is no material.
-#[allow(dead_code, reason = "not every test file wants both")]
-pub(crate) fn text(file: &str) -> Option<String> {
-    let read = folder().and_then(|folder| std::fs::read_to_string(folder.join(file)).ok());
-    if read.is_none() {
+/// A file's place; `None`, with a printed reason, where there is no material.
+#[allow(dead_code, reason = "not every test file wants all of these")]
+pub(crate) fn path(file: &str) -> Option<PathBuf> {
+    let path = folder()
+        .map(|folder| folder.join(file))
+        .filter(|path| path.is_file());
+    if path.is_none() {
         println!("skipped: {file} is not here; name its folder in MOUTHPIECE_MATERIAL");
     }
-    read
+    path
+}
+
+/// A file's text; the same where there is none.
+#[allow(dead_code, reason = "not every test file wants all of these")]
+pub(crate) fn text(file: &str) -> Option<String> {
+    path(file).and_then(|path| std::fs::read_to_string(path).ok())
 }
 
 /// The phone symbols of a file, found without the readers under test.
-#[allow(dead_code, reason = "not every test file wants both")]
+#[allow(dead_code, reason = "not every test file wants all of these")]
 pub(crate) fn symbols(file: &str, text: &str) -> Vec<String> {
     let owned = |field: Option<&str>| field.unwrap_or_default().to_owned();
     let lines = text.lines();
