@@ -269,6 +269,35 @@ proptest! {
     }
 }
 
+#[test]
+fn what_aligners_and_voices_write_of_english_is_known() {
+    // Montreal's English (US and UK), Piper's en_US and espeak-ng's English voices.
+    let ipa = "a aj aw aː b bʲ c cʰ cʷ d dʒ dʲ d̪ e ej eː f fʲ h i iː j k kʰ kʷ l m mʲ m̩ n n̩ o ow p pʰ pʲ \
+               pʷ s t tʃ tʰ tʲ tʷ t̪ u uː v vʲ w z æ ç ð ŋ ɐ ɑ ɑː ɒ ɒː ɔ ɔj ə əw ɚ ɛ ɛː ɜ ɜː ɝ ɟ ɟʷ ɡ ɡʷ ɪ ɫ \
+               ɫ̩ ɱ ɲ ɹ ɾ ɾʲ ɾ̃ ʃ ʉ ʉː ʊ ʎ ʒ ʔ θ spn sil ᵻ əl ɑːɹ ɔːɹ oːɹ ɪɹ ɛɹ ʊɹ aɪɚ aɪə iə eɪ oʊ aɪ aʊ ɔɪ \
+               əʊ eə ʊə n̩ ʌʉ ʍ";
+    let espeak = "s n I t k d r l z @ p m E N 3 I# a eI b f I2 i t# g aI S 0 oU V v u: i: @L dZ h ; a# 3: tS \
+                  j A@ aU w O: o@ aa O@ U T r- O2 e@ i@ i@3 OI U@ A: Z D aI3 @- aI@ n- t2 ? @2 aI2 VR IR w# _ _:";
+    // MBROLA's us1 and en1.
+    let sampa = "_ p b t d k g tS dZ f v T D s z S Z h m n N l r w j I E { A O U V @ r= i u EI AI OI @U AU 4 \
+                 e Q i: u: 3: A: O: I@ e@ U@ eI aI aU";
+    for (alphabet, symbols) in [
+        (Alphabet::Ipa, ipa),
+        (Alphabet::Espeak, espeak),
+        (Alphabet::XSampa, sampa),
+    ] {
+        for symbol in symbols.split_whitespace() {
+            let spoken = alphabet.spoken(symbol);
+            assert!(
+                spoken.exact,
+                "{alphabet:?} {symbol}: {}",
+                codes(spoken.phones)
+            );
+        }
+        assert_eq!(Alphabet::guess(symbols.split_whitespace()), alphabet);
+    }
+}
+
 /// `symbol` for ten ticks each.
 fn stream(symbols: &[&'static str]) -> Vec<alphabet::Timed<'static>> {
     let timed = (0..).zip(symbols).map(|(at, symbol)| alphabet::Timed {
