@@ -39,7 +39,7 @@ pub fn run(args: &BenchArgs) -> anyhow::Result<()> {
     let started = Wall::now();
     let utterance = Utterance::demo()?;
     let cast = Cast::load(&args.cast)?;
-    let part = Part::new(&cast, &utterance.segments, Some(1));
+    let part = Part::new(&cast, &utterance.segments, Some(1)).hearing(utterance.sound.as_deref());
     let mut performance = Performance::new(Arc::clone(&cast.head), part.clone());
     let mut instant = Instant::default();
     performance.at(0, &mut instant);

@@ -15,6 +15,7 @@ use clap::{ArgAction, Args, Parser, Subcommand, ValueEnum};
 use mouthpiece_phonemes::Alphabet;
 use mouthpiece_render::{Camera, Tier, View};
 use mouthpiece_rig::{Anatomy, TissueModel};
+use mouthpiece_speech::State;
 
 pub use head::{CalibrateArgs, FitArgs, HeadCommand, InfoArgs, LandmarksArgs};
 pub use scene::{BackgroundArg, SceneArgs};
@@ -104,6 +105,11 @@ pub struct StageArgs {
     /// Seed of the blinks and glances of an idle face
     #[arg(long, value_name = "N", default_value_t = 1)]
     pub seed: u64,
+    /// Of an utterance that is still coming in so much must be there before it begins: what the mouth knows
+    /// ahead
+    #[arg(long, value_name = "MS", default_value_t = 300,
+          value_parser = clap::value_parser!(u16).range(0..=500))]
+    pub look_ahead: u16,
     #[command(flatten)]
     pub cast: CastArgs,
 }
@@ -175,6 +181,34 @@ pub struct MoodArgs {
     /// Lead the face through the expressions of a script, .json or .ron
     #[arg(long, value_name = "F")]
     pub script: Option<PathBuf>,
+    /// What the face does while it says nothing, where it has a seed
+    #[arg(long, value_enum, default_value_t = StateArg::Idle)]
+    pub state: StateArg,
+}
+
+/// What a face does while it says nothing.
+#[derive(Clone, Copy, Debug, Default, ValueEnum)]
+pub enum StateArg {
+    /// Nobody is there
+    #[default]
+    Idle,
+    /// Somebody speaks to it
+    Listening,
+    /// It looks for words
+    Thinking,
+    /// It has the word
+    Speaking,
+}
+
+impl From<StateArg> for State {
+    fn from(arg: StateArg) -> Self {
+        match arg {
+            StateArg::Idle => Self::Idle,
+            StateArg::Listening => Self::Listening,
+            StateArg::Thinking => Self::Thinking,
+            StateArg::Speaking => Self::Speaking,
+        }
+    }
 }
 
 /// Offline video with sound: the same face faster than real time, the same bytes every time
@@ -252,6 +286,10 @@ pub struct CurvesArgs {
     /// Seed of blinks and glances; without one the face does nothing but speak
     #[arg(long, value_name = "N")]
     pub seed: Option<u64>,
+    /// Know each label only so long before it begins, as a live face may, and say what that changes
+    #[arg(long, value_name = "MS", conflicts_with = "seed",
+          value_parser = clap::value_parser!(u16).range(0..=5000))]
+    pub look_ahead: Option<u16>,
     #[command(flatten)]
     pub mood: MoodArgs,
     #[command(flatten)]

@@ -6,7 +6,7 @@
 
 use std::fmt::Write as _;
 
-use mouthpiece_rig::{Control, Measures, measure};
+use mouthpiece_rig::{Control, Measures, TICK_RATE, measure};
 
 use crate::cli::{CurvesArgs, Fps};
 use crate::input::Utterance;
@@ -27,7 +27,13 @@ const MEASURED: [&str; 5] = [
 pub fn run(args: &CurvesArgs) -> anyhow::Result<()> {
     let utterance = Utterance::load(&args.input)?;
     let cast = Cast::load(&args.cast)?;
-    let part = Part::new(&cast, &utterance.segments, args.seed).with_mood(Mood::load(&args.mood)?);
+    let mut part = Part::new(&cast, &utterance.segments, args.seed)
+        .hearing(utterance.sound.as_deref())
+        .with_mood(Mood::load(&args.mood)?);
+    if let Some(ms) = args.look_ahead {
+        let cost = part.look_ahead(&cast, i64::from(ms) * TICK_RATE / 1000);
+        eprintln!("look-ahead of {ms} ms: {cost}");
+    }
     let rate = args.rate;
     // Both ends count: a second at 100 Hz is 101 rows.
     let rows = (0..=rate.frames(utterance.ticks)).take_while({

@@ -97,8 +97,9 @@ impl Job {
         bar: &ProgressBar,
     ) -> anyhow::Result<()> {
         let cast = &self.cast;
-        let part =
-            Part::new(cast, &self.utterance.segments, Some(self.seed)).with_mood(self.mood.clone());
+        let part = Part::new(cast, &self.utterance.segments, Some(self.seed))
+            .hearing(self.utterance.sound.as_deref())
+            .with_mood(self.mood.clone());
         let (fps, frames) = (self.fps, clip.frames);
         let times = (0..frames).map(move |k| fps.ticks(k));
         let instants = Instants::start(Arc::clone(&cast.head), part, times)?;

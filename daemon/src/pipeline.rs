@@ -5,6 +5,8 @@
 //! and encoding. The counter of instants is the only clock: the same utterance,
 //! instants and seed give the same key frames, whatever the machine is doing meanwhile.
 
+mod cost;
+
 use std::sync::Arc;
 use std::thread::JoinHandle;
 
@@ -14,9 +16,10 @@ use mouthpiece_phonemes::Segment;
 use mouthpiece_rig::{
     Controls, Head, KeyFrame, Library, Mouth, STEP_TICKS, Script, Simulation, TICK_RATE,
 };
-use mouthpiece_speech::{Idle, Speech, Track};
+use mouthpiece_speech::{Idle, Listener, LookAhead, Manner, Speech, State, Track};
 
 use crate::cli::{CastArgs, MoodArgs, Usage};
+use cost::Cost;
 
 /// The head runs this long before the first instant, so that it is settled by then.
 const PRE_ROLL_TICKS: i64 = TICK_RATE;
@@ -54,6 +57,7 @@ impl Cast {
 pub struct Mood {
     expression: Option<Controls>,
     script: Option<Script>,
+    state: State,
 }
 
 impl Mood {
@@ -62,6 +66,7 @@ impl Mood {
         Ok(Self {
             expression: args.expression.as_deref().map(expression).transpose()?,
             script: args.script.as_deref().map(Script::read).transpose()?,
+            state: args.state.into(),
         })
     }
 
@@ -90,21 +95,52 @@ pub fn expression(name: &str) -> anyhow::Result<Controls> {
 /// What the head is told: speech, an expression over it, and on top of both what a living face does.
 #[derive(Clone)]
 pub struct Part {
-    track: Track,
+    spoken: Spoken,
     head: Arc<Head>,
     mood: Mood,
     idle: Option<Idle>,
 }
 
+/// What is said: all of it, or as much as is known by now.
+#[derive(Clone)]
+enum Spoken {
+    Whole(Track),
+    Coming(Box<LookAhead>),
+}
+
+impl Spoken {
+    fn track(&self) -> &Track {
+        match self {
+            Self::Whole(track) => track,
+            Self::Coming(coming) => coming.stream().track(),
+        }
+    }
+
+    fn controls_at(&self, ticks: i64) -> Controls {
+        match self {
+            Self::Whole(track) => track.controls_at(ticks),
+            Self::Coming(coming) => coming.stream().controls_at(ticks),
+        }
+    }
+}
+
 impl Part {
-    /// Speaks `segments`; with a seed it also blinks, glances and sways.
+    /// Speaks `segments`; with a seed it also blinks, glances, breathes and nods.
     pub fn new(cast: &Cast, segments: &[Segment], seed: Option<u64>) -> Self {
         Self {
-            track: cast.speech.track(segments),
+            spoken: Spoken::Whole(cast.speech.track(segments)),
             head: Arc::clone(&cast.head),
             mood: Mood::default(),
             idle: seed.map(Idle::new),
         }
+    }
+
+    /// Speaks as loud and stressed as `sound`, 48 kHz mono, is.
+    pub fn hearing(mut self, sound: Option<&[f32]>) -> Self {
+        if let (Spoken::Whole(track), Some(sound)) = (&mut self.spoken, sound) {
+            track.hear(&Listener::whole(sound));
+        }
+        self
     }
 
     /// Shows `mood` besides.
@@ -112,19 +148,34 @@ impl Part {
         Self { mood, ..self }
     }
 
+    /// From now on labels become known only `ticks` before they begin; says what that costs.
+    pub fn look_ahead(&mut self, cast: &Cast, ticks: i64) -> Cost {
+        let segments = self.spoken.track().segments().to_vec();
+        let whole = cast.speech.track(&segments);
+        let coming = LookAhead::new(&cast.speech, &segments, ticks);
+        let cost = Cost::of(&whole, coming.clone());
+        self.spoken = Spoken::Coming(Box::new(coming));
+        cost
+    }
+
+    /// Learns what becomes known by `now`.
+    fn advance(&mut self, now: i64) {
+        if let Spoken::Coming(coming) = &mut self.spoken {
+            coming.advance(now);
+        }
+    }
+
     /// The controls at `ticks`.
     pub fn controls_at(&self, ticks: i64) -> Controls {
-        let mut controls = self.track.controls_at(ticks);
-        let mouth = |speech: &Controls| {
-            Mouth::of(
-                &self.head.calibration,
-                speech,
-                self.track.speaking_at(ticks),
-            )
-        };
+        let mut controls = self.spoken.controls_at(ticks);
+        let track = self.spoken.track();
+        let speaking = track.speaking_at(ticks);
+        let mouth = |speech: &Controls| Mouth::of(&self.head.calibration, speech, speaking);
         self.mood.show(ticks, mouth, &mut controls);
         if let Some(idle) = &self.idle {
-            idle.add(ticks, self.track.speaking_at(ticks), &mut controls);
+            let manner = Manner::from(self.mood.state).towards(State::Speaking, speaking);
+            idle.add(ticks, &manner, &mut controls);
+            idle.accompany(track, ticks, 1.0, &mut controls);
         }
         controls
     }
@@ -168,7 +219,9 @@ impl Performance {
 
     fn step(&mut self) {
         // What is to be reached by the end of the step.
-        let controls = self.part.controls_at(self.simulation.time() + STEP_TICKS);
+        let time = self.simulation.time() + STEP_TICKS;
+        self.part.advance(time);
+        let controls = self.part.controls_at(time);
         self.simulation.step(&controls);
     }
 

@@ -26,6 +26,8 @@ pub(crate) struct Piece {
     pub(crate) core: (i64, i64),
     /// Index into [`Voice::postures`].
     pub(crate) posture: u16,
+    /// How far lips and jaw go from rest, by stress; 1 is as the tables have it.
+    pub(crate) scale: f32,
 }
 
 impl Piece {
@@ -38,6 +40,7 @@ impl Piece {
             end,
             core: (start + edge, end - edge),
             posture,
+            scale: 1.0,
         }
     }
 }
@@ -103,6 +106,17 @@ impl<'a> Blend<'a> {
 
     /// Adds what `posture` with its middle at `core` says at `time`.
     pub(crate) fn add(&mut self, time: i64, core: (i64, i64), posture: &Posture) {
+        self.add_scaled(time, core, posture, 1.0);
+    }
+
+    /// The same, with the opening of lips and jaw `scale` times as far from rest.
+    pub(crate) fn add_scaled(
+        &mut self,
+        time: i64,
+        core: (i64, i64),
+        posture: &Posture,
+        scale: f32,
+    ) {
         for group in Group::ALL {
             if !posture.governs[group as usize] {
                 continue;
@@ -110,9 +124,13 @@ impl<'a> Blend<'a> {
             let curve = &self.voice.curves[posture.class][group as usize];
             let d = curve.at(time, core, self.voice.support);
             if d > 0.0 {
+                let opens = matches!(group, Group::Lips | Group::Jaw);
+                let scale = if opens { scale } else { 1.0 };
                 for &control in &self.voice.driven[group as usize] {
                     let has = f32::from(u8::from(posture.has(control)));
-                    self.weighted[control as usize] += d * has * posture.targets[control];
+                    let rest = self.voice.rest[control];
+                    let target = rest + (posture.targets[control] - rest) * scale;
+                    self.weighted[control as usize] += d * has * target;
                     self.weight[control as usize] += d * has;
                 }
             }

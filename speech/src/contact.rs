@@ -16,6 +16,9 @@ use crate::tables::{Contact, ContactTimes, Group};
 /// The least time to go over, even between two contacts that follow each other at once, ms.
 const RAMP_MS_MIN: f32 = 10.0;
 
+/// A sound this many times as long as a long one is held throughout.
+const LONG_HELD: f32 = 1.5;
+
 /// A stretch of contact; ticks.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Hold {
@@ -33,6 +36,9 @@ pub(crate) struct Windows {
     jaw: (i64, i64),
     inset: i64,
     half_core_min: i64,
+    half_core_max: i64,
+    /// Holds longer than the first are held for longer than that, those longer than the second throughout.
+    long: (i64, i64),
     ramp_min: i64,
 }
 
@@ -43,6 +49,8 @@ impl Windows {
             jaw: (ticks(times.jaw_approach_ms), ticks(times.jaw_release_ms)),
             inset: ticks(times.inset_ms),
             half_core_min: ticks(times.core_ms_min / 2.0),
+            half_core_max: ticks(times.core_ms_max / 2.0),
+            long: (ticks(times.long_ms), ticks(times.long_ms * LONG_HELD)),
             ramp_min: ticks(RAMP_MS_MIN),
         }
     }
@@ -57,7 +65,12 @@ impl Windows {
     fn core(&self, hold: &Hold) -> (i64, i64) {
         let half = hold.end.saturating_sub(hold.start) / 2;
         let middle = hold.start.saturating_add(half);
-        let half = (half - self.inset).max(self.half_core_min);
+        let whole = half - self.inset;
+        // A label is longer than the contact within it, unless the sound is held on purpose.
+        let (long, held) = self.long;
+        let over = (half * 2 - long).clamp(0, held - long);
+        let more = (whole - self.half_core_max).max(0) * over / (held - long).max(1);
+        let half = whole.min(self.half_core_max + more).max(self.half_core_min);
         (middle.saturating_sub(half), middle.saturating_add(half))
     }
 
@@ -138,6 +151,21 @@ pub(crate) fn apply(voice: &Voice, holds: &[Hold], time: i64, controls: &mut Con
             }
         }
     }
+}
+
+/// How far lip to lip is in charge at `time`, or lip to teeth.
+pub(crate) fn closing(voice: &Voice, holds: &[Hold], time: i64) -> f32 {
+    let windows = &voice.windows;
+    let reach = windows.reach();
+    let first = holds.partition_point(|h| h.end < time.saturating_sub(reach));
+    let mut most = 0.0_f32;
+    for (i, hold) in holds.iter().enumerate().skip(first) {
+        if hold.start > time.saturating_add(reach) {
+            break;
+        }
+        most = most.max(windows.weight(holds, i, time, windows.lips));
+    }
+    most
 }
 
 fn close_lips(

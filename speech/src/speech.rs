@@ -136,6 +136,9 @@ pub(crate) struct Voice {
     pub(crate) lag: i64,
     pub(crate) gap: i64,
     pub(crate) hold_share: f32,
+    /// Opening with primary, secondary and no stress, and how much a deviation of loudness adds.
+    pub(crate) stress: [f32; 3],
+    pub(crate) loudness_gain: f32,
 }
 
 impl Voice {
@@ -181,6 +184,12 @@ impl Voice {
             lag: ticks(table.tissue_lag_ms),
             gap: ticks(table.gap_ms),
             hold_share: table.contact.hold_share,
+            stress: [
+                table.opening.primary,
+                table.opening.secondary,
+                table.opening.unstressed,
+            ],
+            loudness_gain: table.opening.loudness,
         })
     }
 

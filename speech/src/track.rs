@@ -10,10 +10,15 @@ use mouthpiece_phonemes::Phone;
 use mouthpiece_phonemes::Segment;
 use mouthpiece_rig::Controls;
 
+mod voicing;
+
 use crate::Speech;
 use crate::blend::{Blend, Piece};
 use crate::contact::{self, Hold, ease};
+use crate::prosody::{Accent, Delivery};
 use crate::speech::Voice;
+use crate::tables::Group;
+use voicing::{Pauses, Sound};
 
 /// How long before the first and after the last sound [`Track::speaking_at`] falls to nothing, ticks.
 const SPEAKING_FADE: i64 = 19_200;
@@ -25,6 +30,8 @@ pub struct Track {
     segments: Vec<Segment>,
     pieces: Vec<Piece>,
     holds: Vec<Hold>,
+    pauses: Pauses,
+    sound: Sound,
 }
 
 impl Track {
@@ -36,7 +43,15 @@ impl Track {
             segments: Vec::new(),
             pieces: Vec::new(),
             holds: Vec::new(),
+            pauses: Pauses::default(),
+            sound: Sound::default(),
         }
+    }
+
+    /// Learns how the utterance sounds, from where it was heard last: louder is wider, and
+    /// [`Idle::accompany`](crate::Idle::accompany) goes with what is stressed.
+    pub fn hear(&mut self, delivery: &Delivery) {
+        self.sound.hear(delivery);
     }
 
     /// Adds a segment behind the others. What overlaps the segment before begins where that ends
@@ -72,6 +87,7 @@ impl Track {
         let reach = self.reach() + self.voice.windows.reach();
         let horizon = ticks.saturating_sub(reach.saturating_mul(2));
         let gone = self.segments.partition_point(|s| s.end < horizon);
+        self.sound.forget_before(horizon);
         if gone > 0 {
             self.segments.drain(..gone);
             self.lay_out_again();
@@ -81,6 +97,7 @@ impl Track {
     /// Forgets everything.
     pub fn clear(&mut self) {
         self.segments.clear();
+        self.sound = Sound::default();
         self.lay_out_again();
     }
 
@@ -109,6 +126,7 @@ impl Track {
         // Told earlier by as much as the tissue is late.
         let time = ticks.saturating_add(self.voice.lag);
         let mut controls = self.blended(time);
+        self.open_by_loudness(time, &mut controls);
         contact::apply(&self.voice, &self.holds, time, &mut controls);
         controls.clamped()
     }
@@ -135,6 +153,52 @@ impl Track {
             .fold(0.0, f32::max)
     }
 
+    /// How far lips touch or are about to, 0 to 1.
+    #[must_use]
+    pub fn contact_at(&self, ticks: i64) -> f32 {
+        contact::closing(
+            &self.voice,
+            &self.holds,
+            ticks.saturating_add(self.voice.lag),
+        )
+    }
+
+    /// Stressed syllables within `reach` of `ticks`: those heard, or where no sound was heard those that
+    /// labels mark.
+    pub(crate) fn accents_near(&self, ticks: i64, reach: i64) -> impl Iterator<Item = Accent> {
+        let (from, to) = (ticks.saturating_sub(reach), ticks.saturating_add(reach));
+        let heard = self.sound.accents(from, to);
+        let first = self.segments.partition_point(|s| s.end < from);
+        let marked = self.segments[first..].iter();
+        let silent = self.sound.is_empty();
+        heard.iter().copied().chain(
+            marked
+                .take_while(move |s| s.start <= to)
+                .filter(move |_| silent)
+                .filter_map(voicing::marked),
+        )
+    }
+
+    /// Pauses (start, end) within `reach` of `ticks`. The first begins at `i64::MIN`; one that no sound has
+    /// followed yet ends at `i64::MAX`.
+    pub(crate) fn pauses_near(&self, ticks: i64, reach: i64) -> impl Iterator<Item = (i64, i64)> {
+        self.pauses.near(ticks, reach)
+    }
+
+    /// Speech that is louder opens jaw and lips further from rest, and softer less; contact comes after.
+    fn open_by_loudness(&self, time: i64, controls: &mut Controls) {
+        let loud = self.sound.loudness_at(time);
+        if loud != 0.0 {
+            let factor = 1.0 + self.voice.loudness_gain * loud;
+            for group in [Group::Lips, Group::Jaw] {
+                for &control in &self.voice.driven[group as usize] {
+                    let rest = self.voice.rest[control];
+                    controls[control] = rest + (controls[control] - rest) * factor;
+                }
+            }
+        }
+    }
+
     /// The plain blend, at a time that already has the tissue's lag.
     fn blended(&self, time: i64) -> Controls {
         let voice = &*self.voice;
@@ -143,7 +207,7 @@ impl Track {
         let (from, to) = (time.saturating_sub(reach), time.saturating_add(reach));
         let near = self.pieces.partition_point(|p| p.end < from);
         for piece in self.pieces[near..].iter().take_while(|p| p.start <= to) {
-            blend.add(time, piece.core, voice.posture(piece.posture));
+            blend.add_scaled(time, piece.core, voice.posture(piece.posture), piece.scale);
         }
         if let (Some(first), Some(last)) = (self.pieces.first(), self.pieces.last()) {
             let silence = voice.posture(voice.sound(Phone::HSharp).posture);
@@ -164,6 +228,7 @@ impl Track {
     fn lay_out_again(&mut self) {
         self.pieces.clear();
         self.holds.clear();
+        self.pauses.clear();
         let segments = std::mem::take(&mut self.segments);
         for (i, &segment) in segments.iter().enumerate() {
             self.lay_out_after(i.checked_sub(1).map(|i| segments[i]), segment);
@@ -182,26 +247,28 @@ impl Track {
             phone, start, end, ..
         } = segment;
         let voice = Arc::clone(&self.voice);
+        self.pauses.push(&segment);
         if let Some(last) = last
             && start.saturating_sub(last.end) > voice.gap
         {
-            self.lay(last.end, start, voice.sound(Phone::HSharp).posture);
+            self.lay(last.end, start, voice.sound(Phone::HSharp).posture, 1.0);
         }
         let sound = voice.sound(phone);
+        let scale = voicing::scale(&voice, &segment);
         if let Some(closure) = missing_closure(&voice, last, segment) {
             let split = start + share_of(start, end, voice.hold_share);
-            self.lay(start, split, closure);
-            self.lay(split, end, sound.posture);
+            self.lay(start, split, closure, 1.0);
+            self.lay(split, end, sound.posture, scale);
         } else if let Some((share, to)) = sound.glide {
             let split = end - share_of(start, end, share);
-            self.lay(start, split, sound.posture);
-            self.lay(split, end, to);
+            self.lay(start, split, sound.posture, scale);
+            self.lay(split, end, to, scale);
         } else {
-            self.lay(start, end, sound.posture);
+            self.lay(start, end, sound.posture, scale);
         }
     }
 
-    fn lay(&mut self, start: i64, end: i64, index: u16) {
+    fn lay(&mut self, start: i64, end: i64, index: u16, scale: f32) {
         let posture = self.voice.posture(index);
         let edge = self.voice.edges[posture.class];
         if let Some(kind) = posture.kind {
@@ -216,7 +283,10 @@ impl Track {
                 }),
             }
         }
-        self.pieces.push(Piece::new(start, end, edge, index));
+        self.pieces.push(Piece {
+            scale,
+            ..Piece::new(start, end, edge, index)
+        });
     }
 }
 

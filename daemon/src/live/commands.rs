@@ -36,7 +36,12 @@ pub fn run(args: &RunArgs) -> Result<()> {
     // First, so that a second daemon ends before it has cost anything.
     let server = net.block_on(Server::bind(&address))?;
     let cast = Cast::load(&args.stage.cast)?;
-    let (player, sight) = Player::start(&cast, choice(&args.stage), args.stage.seed)?;
+    let (player, sight) = Player::start(
+        &cast,
+        choice(&args.stage),
+        args.stage.seed,
+        args.stage.look_ahead,
+    )?;
     let serving = net.spawn(server.serve(player.handle()));
     let seen = match Display::open() {
         Ok(display) => show(display, &net, &cast, sight, look, &stop, None, None),
@@ -96,7 +101,7 @@ fn perform(
 ) -> Result<()> {
     let look = look(stage)?;
     let cast = Cast::load(&stage.cast)?;
-    let (player, sight) = Player::start(&cast, choice(stage), stage.seed)?;
+    let (player, sight) = Player::start(&cast, choice(stage), stage.seed, stage.look_ahead)?;
     let display = match Display::open() {
         Ok(display) => Some(display),
         Err(error) if player.has_sound() => {

@@ -9,7 +9,7 @@
 use mouthpiece_phonemes::Segment;
 use mouthpiece_protocol::ErrorCode;
 use mouthpiece_rig::TICK_RATE;
-use mouthpiece_speech::{Speech, Track};
+use mouthpiece_speech::{Delivery, Speech, Track};
 use tokio::sync::mpsc;
 
 use std::thread::Thread;
@@ -62,6 +62,8 @@ pub enum Cue {
     },
     /// More labels, in ticks from its start.
     Segments { key: u64, segments: Vec<Segment> },
+    /// More of how it sounds.
+    Heard { key: u64, delivery: Delivery },
     /// Nothing of it from tick `at` on.
     Stop { key: u64, at: i64 },
     /// It is over and may be forgotten.
@@ -78,6 +80,9 @@ pub struct Conductor {
     speech: Speech,
     /// In the order of their `begin`; those that speak have a start.
     utterances: Vec<Utterance>,
+    /// How much of an utterance must be there before it begins, ticks: what covers for a sender that
+    /// stutters, and what the mouth knows ahead.
+    look_ahead: i64,
     block: Vec<f32>,
     quit: bool,
 }
@@ -89,6 +94,7 @@ impl Conductor {
         cues: crossbeam::channel::Sender<Cue>,
         face: Option<Thread>,
         speech: Speech,
+        look_ahead: i64,
     ) -> Self {
         Self {
             output,
@@ -97,6 +103,7 @@ impl Conductor {
             face,
             speech,
             utterances: Vec::new(),
+            look_ahead,
             block: vec![0.0; super::sound::BLOCK_TICKS],
             quit: false,
         }
@@ -190,7 +197,10 @@ impl Conductor {
                 now_ns,
             );
         } else if let Some(utterance) = self.find(key) {
-            utterance.add_sound(mono, written);
+            let delivery = utterance.add_sound(mono, written);
+            if utterance.start.is_some() {
+                self.cue(Cue::Heard { key, delivery });
+            }
         }
     }
 
@@ -238,7 +248,7 @@ impl Conductor {
             let Some(next) = self
                 .utterances
                 .iter()
-                .position(|u| u.start.is_none() && u.ready())
+                .position(|u| u.start.is_none() && u.ready(self.look_ahead))
             else {
                 break;
             };
@@ -256,7 +266,8 @@ impl Conductor {
         let utterance = &mut self.utterances[index];
         utterance.begin_at(start);
         let key = utterance.key;
-        let track = Box::new(self.speech.track(&utterance.segments));
+        let mut track = Box::new(self.speech.track(&utterance.segments));
+        track.hear(&utterance.delivery);
         self.cue(Cue::Start { key, start, track });
     }
 

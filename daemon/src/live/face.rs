@@ -106,7 +106,7 @@ impl<B: Body> Face<B> {
         let mut felt = i64::MAX;
         loop {
             match self.cues.try_recv() {
-                Ok(cue) => felt = felt.min(self.score.take(cue)),
+                Ok(cue) => felt = felt.min(self.score.take(cue, audible)),
                 Err(TryRecvError::Empty) => break,
                 Err(TryRecvError::Disconnected) => return Flow::End,
             }

@@ -49,8 +49,14 @@ pub struct Handle {
 }
 
 impl Player {
-    /// Starts both threads. `seed` is the idle life's.
-    pub fn start(cast: &Cast, choice: Choice, seed: u64) -> Result<(Self, Sight)> {
+    /// Starts both threads. `seed` is the idle life's, `look_ahead_ms` how much of an utterance that is still
+    /// coming in must be there before it begins.
+    pub fn start(
+        cast: &Cast,
+        choice: Choice,
+        seed: u64,
+        look_ahead_ms: u16,
+    ) -> Result<(Self, Sight)> {
         let origin = Origin::new();
         let cell = Arc::new(ClockCell::default());
         let (commands, inbox) = mpsc::channel(COMMANDS_MAX);
@@ -72,13 +78,14 @@ impl Player {
 
         let face = simulation.thread().clone();
         let speech = cast.speech.clone();
+        let look_ahead = i64::from(look_ahead_ms) * TICK_RATE / 1000;
         let sound_cell = Arc::clone(&cell);
         let (opened, has_sound) = std::sync::mpsc::sync_channel(1);
         let sound = spawn("sound", move || {
             let output = Output::open(choice, sound_cell, origin);
             // Nobody waits for it only when the start itself failed.
             let _ = opened.send(output.has_device());
-            let mut conductor = Conductor::new(output, inbox, cue, Some(face), speech);
+            let mut conductor = Conductor::new(output, inbox, cue, Some(face), speech, look_ahead);
             drive(|| conductor.step(origin.now_ns()));
         })?;
 

@@ -4,12 +4,17 @@
 //! what was there. Knows nothing of sound.
 
 use mouthpiece_rig::{Control, Controls, TICK_RATE};
-use mouthpiece_speech::{Idle, Speech, Track};
+use mouthpiece_speech::{Correction, Idle, Manner, Speech, State, States, Track};
 
 use super::conductor::Cue;
 
-/// How long before its first sound a label can be felt: the reach of anticipation.
-const FELT_BEFORE_TICKS: i64 = TICK_RATE * 6 / 10;
+/// How long before its first sound a label can be felt: the reach of anticipation, and of the breath
+/// before it.
+const FELT_BEFORE_TICKS: i64 = TICK_RATE * 7 / 10;
+/// How long before a sound is heard it can be seen: brows go up for what is stressed.
+const SEEN_BEFORE_TICKS: i64 = TICK_RATE * 3 / 10;
+/// Who has spoken waits for an answer for so long before the face is idle (judgement).
+const LISTENING_TICKS: i64 = TICK_RATE * 10;
 /// A stopped mouth goes to rest over this long; the tissue adds its own inertia.
 const RELAX_TICKS: i64 = TICK_RATE / 5;
 /// How long after its last label an utterance may still be felt.
@@ -33,6 +38,9 @@ pub struct Score {
     spoken: Vec<Spoken>,
     rest: Controls,
     idle: Idle,
+    states: States,
+    /// What was shown already and is not so any more.
+    correction: Correction,
 }
 
 impl Score {
@@ -41,11 +49,22 @@ impl Score {
             spoken: Vec::new(),
             rest: speech.track(&[]).controls_at(0),
             idle,
+            states: States::default(),
+            correction: Correction::default(),
         }
     }
 
-    /// Takes a cue in; returns the first tick at which it changes anything.
-    pub fn take(&mut self, cue: Cue) -> i64 {
+    /// Takes a cue in; returns the first tick at which it changes anything. What it changes of what is
+    /// shown at `audible` already goes over without a jump.
+    pub fn take(&mut self, cue: Cue, audible: i64) -> i64 {
+        let told = self.controls_at(audible);
+        let felt = self.change(cue);
+        let known = self.known_at(audible);
+        self.correction = Correction::new(audible, &told, &known);
+        felt
+    }
+
+    fn change(&mut self, cue: Cue) -> i64 {
         match cue {
             Cue::Start { key, start, track } => {
                 let felt = start + track.start() - FELT_BEFORE_TICKS;
@@ -68,24 +87,52 @@ impl Score {
                 }
                 first.saturating_add(spoken.start - FELT_BEFORE_TICKS)
             }
+            Cue::Heard { key, delivery } => {
+                let Some(spoken) = self.live(key) else {
+                    return i64::MAX;
+                };
+                spoken.track.hear(&delivery);
+                let first = delivery.accents.first().map(|a| a.at);
+                first.map_or(i64::MAX, |at| {
+                    (spoken.start + at).saturating_sub(SEEN_BEFORE_TICKS)
+                })
+            }
             Cue::Stop { key, at } => {
                 let Some(spoken) = self.live(key) else {
                     return i64::MAX;
                 };
                 (spoken.stop, spoken.done) = (Some(at), true);
+                self.listen_from(at);
                 at
             }
             Cue::Done { key } => {
                 if let Some(spoken) = self.live(key) {
                     spoken.done = true;
+                    let end = spoken.start + spoken.track.end();
+                    self.listen_from(end);
+                    return end;
                 }
                 i64::MAX
             }
         }
     }
 
+    /// Who has had the word waits for an answer.
+    fn listen_from(&mut self, tick: i64) {
+        self.states.change(tick, State::Listening);
+        self.states
+            .change(tick.saturating_add(LISTENING_TICKS), State::Idle);
+    }
+
     /// What the head is told at `tick`.
     pub fn controls_at(&self, tick: i64) -> Controls {
+        let mut controls = self.known_at(tick);
+        self.correction.add(tick, &mut controls);
+        controls
+    }
+
+    /// The same for someone who knew everything from the beginning.
+    fn known_at(&self, tick: i64) -> Controls {
         let mut controls = self.rest;
         let mut speaking: f32 = 0.0;
         for spoken in &self.spoken {
@@ -102,7 +149,14 @@ impl Score {
             speaking = speaking.max(spoken.track.speaking_at(local) * share);
         }
         let mut controls = controls.clamped();
-        self.idle.add(tick, speaking, &mut controls);
+        let manner: Manner = self.states.at(tick).towards(State::Speaking, speaking);
+        self.idle.add(tick, &manner, &mut controls);
+        for spoken in &self.spoken {
+            let local = tick - spoken.start;
+            let share = spoken.share(tick);
+            self.idle
+                .accompany(&spoken.track, local, share, &mut controls);
+        }
         controls
     }
 
@@ -162,16 +216,19 @@ mod tests {
         let speech = speech();
         let mut score = Score::new(&speech, Idle::new(1));
         let rest = jaw(&score, 0);
-        let felt = score.take(Cue::Start {
-            key: 1,
-            start: 480_000,
-            track: Box::new(speech.track(&open_vowel())),
-        });
+        let felt = score.take(
+            Cue::Start {
+                key: 1,
+                start: 480_000,
+                track: Box::new(speech.track(&open_vowel())),
+            },
+            0,
+        );
         assert!(jaw(&score, 480_000 + 33_600) > rest + 0.05);
         for tick in (0..felt).step_by(4_800) {
             assert!((jaw(&score, tick) - rest).abs() < 1e-4, "at {tick}");
         }
-        score.take(Cue::Done { key: 1 });
+        score.take(Cue::Done { key: 1 }, 0);
         score.forget_before(480_000 + 67_200 + 2 * 48_000);
         assert_eq!(jaw(&score, 480_000 + 33_600), rest, "forgotten");
     }
@@ -181,14 +238,17 @@ mod tests {
         let speech = speech();
         let mut score = Score::new(&speech, Idle::new(1));
         let rest = jaw(&score, 0);
-        score.take(Cue::Start {
-            key: 1,
-            start: 0,
-            track: Box::new(speech.track(&open_vowel())),
-        });
+        score.take(
+            Cue::Start {
+                key: 1,
+                start: 0,
+                track: Box::new(speech.track(&open_vowel())),
+            },
+            0,
+        );
         let at = 33_600;
         let open = jaw(&score, at);
-        assert_eq!(score.take(Cue::Stop { key: 1, at }), at);
+        assert_eq!(score.take(Cue::Stop { key: 1, at }, 0), at);
         let mut last = open;
         for tick in (at..at + RELAX_TICKS + 960).step_by(480) {
             let now = jaw(&score, tick);

@@ -3,6 +3,7 @@
 use mouthpiece_phonemes::Segment;
 use mouthpiece_protocol::DaemonMessage;
 use mouthpiece_rig::TICK_RATE;
+use mouthpiece_speech::{Delivery, Listener};
 use tokio::sync::mpsc;
 
 use std::sync::Arc;
@@ -10,9 +11,6 @@ use std::sync::atomic::{AtomicI64, Ordering};
 
 use super::time::seconds;
 
-/// An utterance that is still coming in begins when this much of its sound and labels is there:
-/// what covers for a sender that stutters.
-const HEADSTART_TICKS: i64 = TICK_RATE * 3 / 10;
 /// Answers of one connection that wait to be sent: progress is left out long before.
 pub const ANSWERS_MAX: usize = 256;
 /// Room that is kept for answers that must not be lost.
@@ -47,6 +45,9 @@ pub(super) struct Utterance {
     audio: Vec<f32>,
     /// All labels so far.
     pub(super) segments: Vec<Segment>,
+    listener: Listener,
+    /// What was heard of it so far.
+    pub(super) delivery: Delivery,
     labelled: i64,
     pub(super) ended: bool,
     /// Its first tick on the timeline.
@@ -63,6 +64,8 @@ impl Utterance {
             begin,
             audio: Vec::new(),
             segments: Vec::new(),
+            listener: Listener::default(),
+            delivery: Delivery::default(),
             labelled: 0,
             ended: false,
             start: None,
@@ -73,8 +76,9 @@ impl Utterance {
     }
 
     /// Whether it can begin.
-    pub(super) fn ready(&self) -> bool {
-        self.ended || self.covered() >= HEADSTART_TICKS
+    /// `look_ahead` is how much of it must be there before that, ticks, while more is to come.
+    pub(super) fn ready(&self, look_ahead: i64) -> bool {
+        self.ended || self.covered() >= look_ahead.max(1)
     }
 
     /// How far everything that it consists of has come in.
@@ -113,13 +117,19 @@ impl Utterance {
         self.start = None;
     }
 
-    /// More sound; what should have been handed over before `written` is lost.
-    pub(super) fn add_sound(&mut self, mono: &[f32], written: i64) {
+    /// More sound; what should have been handed over before `written` is lost. Returns what it says of how
+    /// the utterance is spoken.
+    pub(super) fn add_sound(&mut self, mono: &[f32], written: i64) -> Delivery {
         if let Some(start) = self.start {
             let late = (written - start - self.sound_ticks()).max(0);
             self.dropped += late.min(i64::try_from(mono.len()).unwrap_or(0));
         }
         self.audio.extend_from_slice(mono);
+        let mut news = Delivery::default();
+        self.listener.hear(mono, &mut news);
+        self.delivery.loudness.extend(&news.loudness);
+        self.delivery.accents.extend(&news.accents);
+        news
     }
 
     /// More labels; returns those that are still of use to a face that is at `audible`.

@@ -2,6 +2,7 @@
 //! for a moment now and then (Lee, Badler and Badler 2002, "Eyes alive", as digested).
 
 use super::blink::shown;
+use super::manner::{Manner, State};
 use super::ms;
 use super::noise::{Events, Noise, Purpose};
 use crate::contact::ease;
@@ -16,6 +17,11 @@ pub(super) struct Gaze {
 /// Mutual gaze and gaze away while talking, seconds; the same while listening, seconds.
 const TALKING: (f32, f32) = (3.1, 0.93);
 const LISTENING: (f32, f32) = (7.9, 0.43);
+/// The same of a face with nobody to talk to (judgement: it keeps an eye on who may come), and while
+/// thinking, when the eyes are away for long as it is.
+const IDLE: (f32, f32) = (6.2, 0.6);
+const THINKING: (f32, f32) = (9.0, 0.43);
+const STATES: [(f32, f32); 4] = [IDLE, LISTENING, THINKING, TALKING];
 
 const GLANCES: Events = Events {
     purpose: Purpose::GlanceInterval,
@@ -39,11 +45,11 @@ const FIXATION: i64 = ms(900);
 const FIXATION_RAD: f32 = 0.012;
 
 /// Where the eyes look relative to the viewer.
-pub(super) fn at(noise: &Noise, ticks: i64, speaking: f32) -> Gaze {
+pub(super) fn at(noise: &Noise, ticks: i64, manner: &Manner) -> Gaze {
     let mut gaze = fixation(noise, ticks);
-    let kept_listening = (TALKING.0 + TALKING.1) / (LISTENING.0 + LISTENING.1);
-    let kept = kept_listening + (1.0 - kept_listening) * speaking;
-    let away_s = LISTENING.1 + (TALKING.1 - LISTENING.1) * speaking;
+    let kept = manner.mean(STATES.map(|s| (TALKING.0 + TALKING.1) / (s.0 + s.1)));
+    let away_s = manner.mean(STATES.map(|s| s.1));
+    let speaking = manner.of(State::Speaking);
     GLANCES.begun(noise, ticks, |number, since| {
         if since < GLANCE_MAX + ms(120) {
             let spread = 0.5 + noise.uniform(Purpose::GlanceLength, number);
@@ -59,7 +65,39 @@ pub(super) fn at(noise: &Noise, ticks: i64, speaking: f32) -> Gaze {
             gaze.pitch += reach * angle.sin() * VERTICAL;
         }
     });
+    let thinking = manner.of(State::Thinking);
+    if thinking > 0.0 {
+        let thought = thought(noise, ticks);
+        gaze.yaw += thought.yaw * thinking;
+        gaze.pitch += thought.pitch * thinking;
+    }
     gaze
+}
+
+/// One look away per cell of this length while thinking.
+const THOUGHT: i64 = ms(3100);
+/// Up and aside, degrees (judgement; that people look away to think is well known, Glenberg et al. 1998).
+const THOUGHT_ASIDE: (f32, f32) = (6.0, 14.0);
+const THOUGHT_UP: (f32, f32) = (-1.0, 10.0);
+
+/// Where a thinking face looks: away for most of each cell, then back for a moment.
+fn thought(noise: &Noise, ticks: i64) -> Gaze {
+    let cell = ticks.div_euclid(THOUGHT);
+    let since = ticks.rem_euclid(THOUGHT);
+    let uniform = |purpose| noise.uniform(purpose, cell);
+    let length = ms(1700) + (uniform(Purpose::ThoughtLength) * ms(1100) as f32) as i64;
+    let mix = |range: (f32, f32), share: f32| (range.0 + (range.1 - range.0) * share).to_radians();
+    let side = uniform(Purpose::ThoughtSide);
+    let sign = if side < 0.5 { -1.0 } else { 1.0 };
+    let yaw = sign * mix(THOUGHT_ASIDE, (side * 2.0).fract());
+    let pitch = mix(THOUGHT_UP, uniform(Purpose::ThoughtHeight));
+    let duration = saccade(yaw.hypot(pitch).to_degrees());
+    let away =
+        ease(since as f32 / duration as f32) - ease((since - length) as f32 / duration as f32);
+    Gaze {
+        yaw: yaw * away,
+        pitch: pitch * away,
+    }
 }
 
 /// Size of a glance, degrees: falls off exponentially.

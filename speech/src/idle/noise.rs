@@ -19,6 +19,22 @@ pub(super) enum Purpose {
     FixationPitch,
     SwayPhase,
     SwayAmplitude,
+    BreathInterval,
+    BreathDepth,
+    SwallowInterval,
+    PauseSwallow,
+    Nod,
+    Brow,
+    BrowOnset,
+    PhraseBlink,
+    PhraseBlinkOnset,
+    ThoughtSide,
+    ThoughtHeight,
+    ThoughtLength,
+    BackchannelInterval,
+    BackchannelSize,
+    RestBrowInterval,
+    RestBrowSize,
 }
 
 /// The source of all randomness of one seed.

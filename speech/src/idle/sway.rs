@@ -1,5 +1,6 @@
 //! Small head movement: sines of different period, each cycle of another size (HABER 5.4).
 
+use super::manner::Manner;
 use super::ms;
 use super::noise::{Noise, Purpose};
 use crate::contact::ease;
@@ -21,11 +22,12 @@ const YAW: [Wave; 3] = [(ms(11_300), 1.0), (ms(6_170), 0.55), (ms(3_730), 0.3)];
 const PITCH: [Wave; 3] = [(ms(9_410), 0.7), (ms(5_230), 0.45), (ms(2_890), 0.3)];
 const ROLL: [Wave; 3] = [(ms(13_700), 0.5), (ms(7_930), 0.35), (ms(4_310), 0.2)];
 
-/// How much of the movement is left in silence.
-const SILENT: f32 = 0.6;
+/// How much of the movement there is when idle, listening, thinking and speaking (judgement: who listens
+/// holds still).
+const SIZES: [f32; 4] = [0.6, 0.45, 0.7, 1.0];
 
-pub(super) fn at(noise: &Noise, ticks: i64, speaking: f32) -> Sway {
-    let size = SILENT + (1.0 - SILENT) * speaking;
+pub(super) fn at(noise: &Noise, ticks: i64, manner: &Manner) -> Sway {
+    let size = manner.mean(SIZES);
     Sway {
         yaw: size * sum(noise, ticks, &YAW, 0),
         pitch: size * sum(noise, ticks, &PITCH, 1),

@@ -43,6 +43,8 @@ pub struct DominanceTable {
     pub controls: Driven,
     /// How contact is made.
     pub contact: ContactTimes,
+    /// How stress and loudness open the mouth.
+    pub opening: Opening,
     /// Dominance per class.
     pub class: BTreeMap<String, ClassRow>,
 }
@@ -80,6 +82,10 @@ pub struct ContactTimes {
     pub inset_ms: f32,
     /// For how long they are at least, ms.
     pub core_ms_min: f32,
+    /// And at most, in a hold that is not a long one, ms.
+    pub core_ms_max: f32,
+    /// From this length on a hold is a long one, ms.
+    pub long_ms: f32,
     /// The jaw's approach, ms.
     pub jaw_approach_ms: f32,
     /// The jaw's release, ms.
@@ -90,6 +96,22 @@ pub struct ContactTimes {
     pub rounded_mm: f32,
     /// Its width, as a share of rest.
     pub rounded_width: f32,
+    /// Where the figures come from.
+    pub source: String,
+}
+
+/// How far jaw and lips open in a vowel, as shares of what the tables say.
+#[derive(Clone, Debug, PartialEq, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Opening {
+    /// In a syllable with primary stress.
+    pub primary: f32,
+    /// With secondary stress.
+    pub secondary: f32,
+    /// With none. Labels that do not say are 1.
+    pub unstressed: f32,
+    /// What a deviation of loudness from the voice's mean adds or takes.
+    pub loudness: f32,
     /// Where the figures come from.
     pub source: String,
 }
@@ -153,6 +175,13 @@ impl DominanceTable {
             figure("release_ms", contact.release_ms, 5.0, 300.0),
             figure("inset_ms", contact.inset_ms, 0.0, 50.0),
             figure("core_ms_min", contact.core_ms_min, 1.0, 60.0),
+            figure(
+                "core_ms_max",
+                contact.core_ms_max,
+                contact.core_ms_min,
+                500.0,
+            ),
+            figure("long_ms", contact.long_ms, 50.0, 1000.0),
             figure("jaw_approach_ms", contact.jaw_approach_ms, 5.0, 300.0),
             figure("jaw_release_ms", contact.jaw_release_ms, 5.0, 300.0),
             figure("hold_share", contact.hold_share, 0.1, 0.9),
@@ -161,6 +190,15 @@ impl DominanceTable {
         ];
         in_range(file, "contact", &times)?;
         sourced(file, "contact", &contact.source)?;
+        let opening = &self.opening;
+        let shares = [
+            figure("primary", opening.primary, 0.5, 1.5),
+            figure("secondary", opening.secondary, 0.5, 1.5),
+            figure("unstressed", opening.unstressed, 0.5, 1.5),
+            figure("loudness", opening.loudness, 0.0, 0.5),
+        ];
+        in_range(file, "opening", &shares)?;
+        sourced(file, "opening", &opening.source)?;
         let mut seen = Vec::new();
         for (name, _) in self.driven() {
             let (file, name) = (file.to_owned(), name.to_owned());

@@ -14,7 +14,9 @@ use mouthpiece_rig::Articulation;
 
 pub(crate) use articulation::posture;
 pub use articulation::{ArticulationRow, Glide, Lips, Tongue};
-pub use dominance::{ClassRow, Contact, ContactTimes, Dominance, DominanceTable, Driven, Group};
+pub use dominance::{
+    ClassRow, Contact, ContactTimes, Dominance, DominanceTable, Driven, Group, Opening,
+};
 pub use error::TableError;
 
 const ARTICULATION: (&str, &str) = (

@@ -12,6 +12,9 @@ use crate::live::sound::Choice;
 use crate::live::time::Origin;
 use crate::live::utterance::ANSWERS_MAX;
 
+/// How much of an utterance must be there: as `run` has it by default.
+const LOOK_AHEAD: i64 = TICK_RATE * 3 / 10;
+
 struct Stage {
     conductor: Conductor,
     commands: mpsc::Sender<Command>,
@@ -34,7 +37,7 @@ fn stage() -> Stage {
     .unwrap();
     let now_ns = origin.now_ns();
     Stage {
-        conductor: Conductor::new(output, inbox, cue, None, speech),
+        conductor: Conductor::new(output, inbox, cue, None, speech, LOOK_AHEAD),
         commands,
         cues,
         answers: mpsc::channel(ANSWERS_MAX),
