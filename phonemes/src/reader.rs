@@ -8,9 +8,11 @@
 use std::fs::File;
 use std::io::{self, Read};
 use std::path::Path;
+use std::sync::Arc;
 
 use crate::error::LabelError;
 use crate::limits::FILE_BYTES_MAX;
+use crate::pronounce::Pronouncer;
 use crate::tick::SampleRate;
 use crate::{Alphabet, Labels, formats, timit};
 
@@ -62,6 +64,8 @@ pub struct ReadOptions {
     pub alphabet: Option<Alphabet>,
     /// Which tier to read, by its name or its number from 1, in formats that have tiers.
     pub tier: Option<String>,
+    /// How words sound, in formats that hold words alone; `None` goes by the words built in.
+    pub pronouncer: Option<Arc<Pronouncer>>,
 }
 
 impl Default for ReadOptions {
@@ -77,6 +81,7 @@ impl ReadOptions {
             rate,
             alphabet: None,
             tier: None,
+            pronouncer: None,
         }
     }
 }

@@ -4,10 +4,12 @@
 mod material;
 
 use std::path::Path;
+use std::sync::Arc;
 
 use mouthpiece_phonemes::pronounce::{Character, Pronouncer, Said, spread_characters};
 use mouthpiece_phonemes::{
-    Phone, ReadOptions, Segment, Stress, TICK_RATE, Word, pronounce, read_file, spread,
+    Phone, ReadOptions, Segment, Source, Stress, TICK_RATE, Word, pronounce, read, read_file,
+    spread,
 };
 use proptest::prelude::*;
 
@@ -310,4 +312,24 @@ proptest! {
         pronouncer.add_dictionary(&text);
         pronouncer.pronounce("bob");
     }
+}
+
+#[test]
+fn readers_of_words_alone_say_them_as_they_are_told() {
+    let json = r#"{"words": [{"word": "Bob", "start": 0.5, "end": 0.9}]}"#;
+    let source = Source {
+        name: "words.json",
+        bytes: json.as_bytes(),
+    };
+    let heard = |options: &ReadOptions| {
+        let labels = read(&source, None, options).unwrap();
+        let codes: Vec<&str> = labels.segments.iter().map(|s| s.phone.code()).collect();
+        codes.join(" ")
+    };
+    let mut options = ReadOptions::default();
+    assert_eq!(heard(&options), "b aa b");
+    let mut own = Pronouncer::new();
+    own.add_dictionary("bob B OW1 B");
+    options.pronouncer = Some(Arc::new(own));
+    assert_eq!(heard(&options), "b ow b");
 }

@@ -163,7 +163,10 @@ impl<'a> Sheet<'a> {
                 "only words have times here; their phones are those of a pronunciation dictionary, \
                  placed by how long each usually lasts",
             ));
-            spread(&words)
+            match &options.pronouncer {
+                Some(pronouncer) => pronouncer.spread(&words),
+                None => spread(&words),
+            }
         } else {
             self.segments(&phones, options.alphabet.or(usual))
         };
