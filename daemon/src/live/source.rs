@@ -4,11 +4,13 @@ use std::io::Read as _;
 use std::path::Path;
 
 use anyhow::{Context as _, Result};
-use mouthpiece_phonemes::{SampleRate, Segment, timit::TimitStream};
+use mouthpiece_phonemes::formats::NdjsonStream;
+use mouthpiece_phonemes::timit::TimitStream;
+use mouthpiece_phonemes::{Alphabet, LineError, SampleRate, Segment};
 use tokio::sync::mpsc;
 
 use crate::cli::InputArgs;
-use crate::input::Utterance;
+use crate::input::{AUTO, Utterance};
 use crate::media::wav;
 
 /// Pieces that wait: a few seconds of sound.
@@ -36,12 +38,12 @@ pub struct Source {
 impl Source {
     /// Opens what `args` name. Files are read and checked before this returns.
     pub fn open(args: &InputArgs) -> Result<Self> {
-        let timit = args.from.as_deref().is_none_or(|f| f == "timit");
-        if args.labels.as_deref() == Some(Path::new("-")) && timit {
-            let rate = SampleRate::new(args.label_rate)?;
+        let streamed = Streamed::of(args)?;
+        if let Some(streamed) = streamed.filter(|_| args.labels.as_deref() == Some(Path::new("-")))
+        {
             let sound = args.audio.as_deref().map(wav::read).transpose()?;
             return Self::start(sound.map(|s| s.frames), move |send| {
-                stdin_labels(rate, send);
+                stdin_labels(streamed, send);
             });
         }
         let Utterance {
@@ -84,14 +86,57 @@ impl Source {
     }
 }
 
+/// The formats that can be spoken line by line.
+enum Streamed {
+    /// Nothing has come yet that tells: JSON begins with a brace, TIMIT with a number.
+    Either(SampleRate, Option<Alphabet>),
+    Timit(TimitStream),
+    Ndjson(NdjsonStream),
+}
+
+impl Streamed {
+    /// `None` where the user named a format that must be there to its end.
+    fn of(args: &InputArgs) -> Result<Option<Self>> {
+        let rate = SampleRate::new(args.label_rate)?;
+        Ok(match args.from.as_deref() {
+            None | Some(AUTO) => Some(Self::Either(rate, args.alphabet)),
+            Some("timit") => Some(Self::Timit(TimitStream::new(rate))),
+            Some("ndjson") => Some(Self::Ndjson(NdjsonStream::new(args.alphabet))),
+            Some(_) => None,
+        })
+    }
+
+    fn push(&mut self, bytes: &[u8], each: impl FnMut(Result<Segment, LineError>)) {
+        if let Self::Either(rate, alphabet) = *self {
+            match bytes.trim_ascii_start().first() {
+                None => return,
+                Some(b'{') => *self = Self::Ndjson(NdjsonStream::new(alphabet)),
+                Some(_) => *self = Self::Timit(TimitStream::new(rate)),
+            }
+        }
+        match self {
+            Self::Timit(stream) => stream.push(bytes, each),
+            Self::Ndjson(stream) => stream.push(bytes, each),
+            Self::Either(..) => {}
+        }
+    }
+
+    fn finish(&mut self, each: impl FnMut(Result<Segment, LineError>)) {
+        match self {
+            Self::Timit(stream) => stream.finish(each),
+            Self::Ndjson(stream) => stream.finish(each),
+            Self::Either(..) => {}
+        }
+    }
+}
+
 /// Reads labels from standard input as they come; a line that cannot be used is named and left out.
-fn stdin_labels(rate: SampleRate, send: &mpsc::Sender<Piece>) {
-    let mut stream = TimitStream::new(rate);
+fn stdin_labels(mut stream: Streamed, send: &mpsc::Sender<Piece>) {
     let mut bytes = [0; READ_BYTES];
     let mut input = std::io::stdin().lock();
     loop {
         let mut segments = Vec::new();
-        let mut each = |line: Result<Segment, mouthpiece_phonemes::LineError>| match line {
+        let mut each = |line: Result<Segment, LineError>| match line {
             Ok(segment) => segments.push(segment),
             Err(error) => tracing::warn!("<stdin>: {error}; the line is left out"),
         };

@@ -200,8 +200,7 @@ impl<'a> Sheet<'a> {
                 }
             }
             for segment in out.iter_mut().skip(first) {
-                let vowel = segment.phone.is_vowel();
-                segment.stress = segment.stress.or(piece.stress.filter(|_| vowel));
+                segment.stress = segment.stress.or(piece.stress);
             }
         }
         out

@@ -38,7 +38,7 @@ fn segments(gap: i64) -> impl Strategy<Value = Vec<Segment>> {
                 _ => None,
             };
             Segment {
-                stress: stress.filter(|_| phone.is_vowel()),
+                stress,
                 ..Segment::new(phone, start, at)
             }
         });

@@ -102,8 +102,7 @@ impl State {
         let (start, end) = (label.start, label.end);
         alphabet::segments(alphabet, &label.text, start, end, &mut self.given);
         for segment in &mut self.given {
-            let own = label.stress.filter(|_| segment.phone.is_vowel());
-            segment.stress = segment.stress.or(own);
+            segment.stress = segment.stress.or(label.stress);
         }
         self.last_end = end;
         Ok(())
