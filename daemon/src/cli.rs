@@ -170,6 +170,9 @@ pub struct InputArgs {
     /// The tier to read of a TextGrid, by its name or its number from 1 [default: phones, else words]
     #[arg(long, value_name = "NAME")]
     pub label_tier: Option<String>,
+    /// Pronunciations of words, as in the CMU dictionary, for labels that hold words alone
+    #[arg(long, value_name = "F")]
+    pub dictionary: Option<PathBuf>,
 }
 
 /// What the face shows besides what it says.
@@ -315,6 +318,9 @@ pub struct LabelsArgs {
     /// The tier to read of a TextGrid, by its name or its number from 1 [default: phones, else words]
     #[arg(long, value_name = "NAME")]
     pub label_tier: Option<String>,
+    /// Pronunciations of words, as in the CMU dictionary, for labels that hold words alone
+    #[arg(long, value_name = "F")]
+    pub dictionary: Option<PathBuf>,
     /// The format to write [default: TIMIT]
     #[arg(long, value_name = "FMT", value_parser = values::written_formats())]
     pub to: Option<String>,

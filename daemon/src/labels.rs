@@ -6,6 +6,7 @@ use mouthpiece_phonemes::{ReadOptions, SampleRate, TICK_RATE, Writer as _, check
 use serde_json::json;
 
 use crate::cli::LabelsArgs;
+use crate::dictionary;
 use crate::input::read_labels;
 use crate::media::output;
 
@@ -14,6 +15,7 @@ pub fn run(args: &LabelsArgs) -> anyhow::Result<()> {
     let mut options = ReadOptions::at(SampleRate::new(args.rate)?);
     options.alphabet = args.alphabet;
     options.tier = args.label_tier.clone();
+    options.pronouncer = dictionary::read(args.dictionary.as_deref())?;
     let labels = read_labels(&args.file, args.from.as_deref(), &options)?;
     let name = match &args.file {
         path if path == Path::new("-") => "<stdin>".into(),

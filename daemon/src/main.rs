@@ -22,6 +22,7 @@
 mod bench;
 mod cli;
 mod curves;
+mod dictionary;
 mod doctor;
 mod export;
 mod head;
