@@ -13,6 +13,7 @@
 //! | [`align`] | no voice: finds the phones of a text in a recording, by pocketsphinx |
 //! | [`closure`] | gives silence before a burst to the stop that it belongs to |
 //! | [`fit`] | makes labels end where the sound does |
+//! | [`refine`] | moves boundaries to where the sound changes |
 //! | [`rows`] | what our scripts print, as labels |
 //! | [`script`] | runs those scripts in Python |
 //! | [`child`] | runs a program with bounded time and output |
@@ -27,6 +28,7 @@ mod festival;
 mod fit;
 mod flite;
 mod piper;
+mod refine;
 mod rows;
 mod script;
 #[cfg(test)]
@@ -35,7 +37,7 @@ mod tests;
 use std::io::Read as _;
 use std::time::Duration;
 
-use mouthpiece_phonemes::{Labels, Segment};
+use mouthpiece_phonemes::{Labels, Segment, TICK_RATE};
 
 use crate::media::wav::Sound;
 
@@ -105,6 +107,15 @@ impl Engine {
         }
     }
 
+    /// How far its boundaries may be off, in ticks; none where they are exact.
+    const fn reach(self) -> Option<i64> {
+        match self {
+            Self::EspeakNg => None,
+            Self::Flite | Self::Festival => Some(35 * TICK_RATE / 1000),
+            Self::Piper => Some(90 * TICK_RATE / 1000),
+        }
+    }
+
     /// Says `text`, in `voice` where it has several.
     pub fn speak(self, text: &str, voice: Option<&str>) -> Result<Spoken, VoiceError> {
         let text = clean(text)?;
@@ -120,6 +131,9 @@ impl Engine {
             });
         }
         fit::fit(&mut labels.segments, sound.frames.len() as i64);
+        if let Some(reach) = self.reach() {
+            refine::refine(&mut labels.segments, &sound.frames, reach);
+        }
         Ok(Spoken {
             name: self.name().to_owned(),
             labels,

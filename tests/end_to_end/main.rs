@@ -10,7 +10,9 @@
 //! | `head_fit` | scans made heads, and what is no scan refused |
 //! | `head_landmarks` | the marking window where there is no display |
 //! | `labels` | label files of every sad kind, and the round trip |
+//! | `closures` | lips that close at every rate, over many sentences; look-ahead |
 //! | `sound` | sound files of every kind |
+//! | `voices` | text instead of labels: speech engines, recordings |
 //! | `usage` | exit statuses, help, what doctor and bench print |
 //! | `show` | what lies under the skin, drawn |
 //! | `still` | pictures against golden ones |
@@ -25,6 +27,7 @@
 )]
 
 mod backdrop;
+mod closures;
 mod export;
 mod expression;
 mod graphics;
@@ -40,3 +43,4 @@ mod show;
 mod sound;
 mod still;
 mod usage;
+mod voices;

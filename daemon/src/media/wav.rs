@@ -1,13 +1,15 @@
 //! Reads a user's sound file, whatever it is, into mono at 48 kHz in step with its labels.
 //!
 //! WAV with 8 to 32-bit integers, 32 and 64-bit floats, A-law and mu-law, any number of channels
-//! (averaged), any rate; RF64; and NIST SPHERE, which is what the TIMIT corpus calls `.WAV`. Read
-//! front to back without seeking, so pipes work. Not for compressed sound: the error says how to
-//! convert it. Our own small reader rather than a library, because lengths of 0 or 0xFFFFFFFF from
-//! programs that write into pipes, and a cut end, are everyday input here.
+//! (averaged), any rate; RF64; and NIST SPHERE, which is what the TIMIT corpus calls `.WAV`, packed
+//! by shorten or not. Read front to back without seeking, so pipes work. Not for other compressed
+//! sound: the error says how to convert it. Our own small reader rather than a library, because
+//! lengths of 0 or 0xFFFFFFFF from programs that write into pipes, and a cut end, are everyday input
+//! here.
 
 mod riff;
 mod samples;
+mod shorten;
 mod sphere;
 
 use std::fs::File;
@@ -63,6 +65,8 @@ struct Header {
     coding: Coding,
     /// What the header says, none where it does not know.
     data_bytes: Option<u64>,
+    /// Whether what follows is packed by `shorten`; the rest tells what it is then.
+    shortened: bool,
 }
 
 /// Reads the file at `path`.
@@ -104,6 +108,21 @@ pub fn decode(mut input: impl Read, name: &str) -> Result<Sound, SoundError> {
         )));
     }
 
+    if header.shortened {
+        let unpacked = shorten::unpack(&mut input, header.channels).map_err(broken)?;
+        return gather(&header, &mut &unpacked[..], name);
+    }
+    gather(&header, &mut input, name)
+}
+
+/// Brings the sound that is in `input` to 48 kHz.
+fn gather(header: &Header, input: &mut impl Read, name: &str) -> Result<Sound, SoundError> {
+    let own = || name.to_string();
+    let broken = |why: String| SoundError::Broken { name: own(), why };
+    let io = |source| SoundError::Io {
+        name: own(),
+        source,
+    };
     let frame_bytes = header.coding.width() * usize::from(header.channels);
     let mut block = vec![0; (BLOCK_BYTES / frame_bytes).max(1) * frame_bytes];
     let mut mono = Vec::new();
@@ -111,7 +130,7 @@ pub fn decode(mut input: impl Read, name: &str) -> Result<Sound, SoundError> {
     let mut left = header.data_bytes.unwrap_or(u64::MAX);
     while left > 0 {
         let want = usize::try_from(left).map_or(block.len(), |left| left.min(block.len()));
-        let got = fill(&mut input, &mut block[..want]).map_err(io)?;
+        let got = fill(input, &mut block[..want]).map_err(io)?;
         left -= got as u64;
         mono.clear();
         header

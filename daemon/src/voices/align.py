@@ -8,6 +8,10 @@ except ImportError as error:
 RATE, FRAME = 16000, 160
 WIDE = 1e-100  # wider still, and scores underflow: words get lost again
 
+# How well the sound fits, a frame within words. What was said scored -7 to -36 (a robotic voice
+# and one with a cold are the low end), another text of the same length -48 to -74.
+POOR, WRONG = -30, -45
+
 with open(sys.argv[1], "rb") as file:
     sound = file.read()
 words = [line.split("\t") for line in told().splitlines()]
@@ -44,12 +48,16 @@ def attempt(padding, **options):
         listen()
     except RuntimeError:
         return None
-    rows = []
+    rows, score, frames = [], 0, 0
     for word in decoder.get_alignment():
+        if not word.name.startswith("<"):
+            score += word.score
+            frames += word.duration
         for phone in word:
             start = max(phone.start - padding, 0) * FRAME
             rows.append((start, max(phone.start + phone.duration - padding, 0) * FRAME, phone.name))
-    return rows, unknown
+    fit = score / max(frames, 1)
+    return (rows, unknown, fit) if fit > WRONG else None
 
 
 wide = dict(beam=WIDE, pbeam=WIDE, wbeam=WIDE, bestpath=False)
@@ -60,10 +68,12 @@ for number, (padding, options) in enumerate(tries, 1):
         break
 else:
     leave(NO_VOICE, "no place for all words")
-rows, unknown = found
+rows, unknown, fit = found
 row("rate", RATE)
 for start, end, name in rows:
     row("phone", start, end, name)
+if fit < POOR:
+    row("note", "the text fits the sound poorly; check that all of it is said there, and nothing else")
 row("note", f"{len(words)} words, attempt {number} of {len(tries)}")
 if unknown:
     row("note", "said by letter-to-sound rules, for its dictionary lacks them: " + ", ".join(unknown))

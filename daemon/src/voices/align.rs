@@ -15,7 +15,7 @@ use mouthpiece_phonemes::{Alphabet, Labels, Note, Notes, TICK_RATE, alphabet};
 
 use super::error::VoiceError;
 use super::script::Script;
-use super::{Spoken, clean, fit, patience, rows};
+use super::{Spoken, clean, fit, patience, refine, rows};
 use crate::live::Resample;
 use crate::media::wav::Sound;
 
@@ -35,16 +35,14 @@ const SCRIPT: Script = Script {
 /// The rate of its model.
 const MODEL_HZ: u32 = 16_000;
 
+/// How far its boundaries may be off: 40 ms, but for a few.
+const REACH_TICKS: i64 = 40 * TICK_RATE / 1000;
+
 /// The labels of `text` as it is said in `sound`, which messages call `name`.
 pub fn align(text: &str, sound: Sound, name: &str) -> Result<Spoken, VoiceError> {
     let text = clean(text)?;
     let failed = |why: String| VoiceError::Failed { engine: NAME, why };
     let words = words(&text);
-    if let Some(number) = words.iter().find(|w| w.contains(|c: char| c.is_numeric())) {
-        return Err(failed(format!(
-            "`{number}` may be said in many ways; spell numbers out"
-        )));
-    }
     let folder = tempfile::tempdir().map_err(VoiceError::Folder)?;
     let path = folder.path().join("sound.raw");
     write(&path, &sound).map_err(|e| failed(format!("{e:#}")))?;
@@ -74,6 +72,7 @@ pub fn align(text: &str, sound: Sound, name: &str) -> Result<Spoken, VoiceError>
         notes.symbol(Alphabet::Arpabet, symbol, spoken, None);
     }
     fit::fit(&mut segments, sound.frames.len() as i64);
+    refine::refine(&mut segments, &sound.frames, REACH_TICKS);
     Ok(Spoken {
         name: name.to_owned(),
         labels: Labels {
@@ -99,8 +98,11 @@ fn words(text: &str) -> Vec<String> {
 }
 
 /// How a word may be said, as the CMU dictionary writes phones but without stress.
-fn said(_word: &str) -> String {
-    String::new()
+fn said(word: &str) -> String {
+    let phones = mouthpiece_phonemes::pronounce(word);
+    let spelt = phones.iter().flat_map(|(phone, _)| phone.cmu());
+    let bare = spelt.map(|p| p.trim_end_matches(|c: char| c.is_ascii_digit()));
+    bare.collect::<Vec<_>>().join(" ")
 }
 
 /// Writes raw 16-bit samples at the model's rate.

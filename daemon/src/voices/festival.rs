@@ -64,7 +64,8 @@ pub fn speak(text: &str, voice: Option<&str>) -> Result<(Labels, Sound), VoiceEr
 
 /// What it calls itself.
 pub fn version() -> Option<String> {
-    script::first_line(NAME, "--version")
+    let line = script::first_line(NAME, "--version")?;
+    Some(line.trim_start_matches("festival: ").to_owned())
 }
 
 fn is_name(name: &str) -> bool {

@@ -21,6 +21,10 @@ else:
     leave(NO_VOICE, "give the path of a model (.onnx, with its .onnx.json), or one of:", ", ".join(voices) or "none")
 if not os.path.isfile(f"{model}.json"):
     leave(1, f"{model}.json is missing; a voice is both files")
+try:
+    import onnx  # Piper needs it for alignments, and would go on without them
+except ImportError as error:
+    leave(1, f"it gives no times, for the package onnx cannot be loaded ({error}); pip install 'piper-tts[alignment]'")
 
 onnxruntime.set_seed(SEED)
 # Both places must ask for alignments, else there are silently none.

@@ -62,9 +62,13 @@ impl Script {
                 voice: voice.unwrap_or_default().to_owned(),
                 known: outcome.complaint(),
             }),
-            _ => Err(VoiceError::Failed {
+            Some(_) => Err(VoiceError::Failed {
                 engine: self.engine,
                 why: outcome.complaint(),
+            }),
+            None => Err(VoiceError::Failed {
+                engine: self.engine,
+                why: format!("it crashed ({})", outcome.status),
             }),
         }
     }

@@ -36,6 +36,7 @@ pub fn header(magic: [u8; 4], input: &mut impl Read) -> Result<Header, String> {
                     channels,
                     coding,
                     data_bytes,
+                    shortened: false,
                 });
             }
             b"fmt " => {

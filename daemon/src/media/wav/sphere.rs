@@ -1,7 +1,8 @@
 //! The header of a NIST SPHERE file: what the TIMIT corpus itself calls `.WAV`.
 //!
-//! A text header of `key -type value` lines in a block whose size is on its second line. Only
-//! uncompressed 16-bit and mu-law sound is read, which is what TIMIT and its relatives hold.
+//! A text header of `key -type value` lines in a block whose size is on its second line. Read are
+//! samples of 16 bits in either order of bytes, mu-law and A-law, and 16 bits packed by `shorten`,
+//! which is what TIMIT and its relatives hold. Not the rare `wavpack` and `shortpack`.
 
 use std::io::Read;
 
@@ -44,11 +45,17 @@ pub fn header(input: &mut impl Read) -> Result<Header, String> {
         ("pcm", Some("10")) => Coding::S16Be,
         ("pcm", Some("01") | None) => Coding::S16,
         ("ulaw" | "mu-law", _) => Coding::MuLaw,
+        ("alaw", _) => Coding::ALaw,
+        (packed, _) if packed.starts_with("pcm,embedded-shorten-") => Coding::S16,
         (other, _) => return Err(format!("its sound is coded as `{other}`")),
     };
     if number("sample_n_bytes").is_some_and(|n| n != coding.width() as u64) {
-        return Err("its samples are not of 16 bits".into());
+        return Err(format!(
+            "its samples are not of {} bits",
+            8 * coding.width()
+        ));
     }
+    let shortened = value("sample_coding").is_some_and(|c| c.contains("shorten"));
     let data_bytes = number("sample_count")
         .and_then(|n| n.checked_mul(coding.width() as u64 * u64::from(channels)));
     Ok(Header {
@@ -56,5 +63,6 @@ pub fn header(input: &mut impl Read) -> Result<Header, String> {
         channels,
         coding,
         data_bytes,
+        shortened,
     })
 }

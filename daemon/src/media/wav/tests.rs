@@ -140,6 +140,70 @@ fn the_corpus_own_sphere_files_are_read() {
     assert!(decode(&b[..700], "SA1.WAV").is_err());
 }
 
+/// A SPHERE header for sound of 48 kHz with the given lines.
+fn sphere(lines: &str) -> Vec<u8> {
+    let mut b = format!("NIST_1A\n   1024\nsample_rate -i 48000\n{lines}end_head\n").into_bytes();
+    b.resize(1024, b' ');
+    b
+}
+
+#[test]
+fn every_coding_of_sphere_is_read() {
+    let mut big = sphere("sample_count -i 1\nsample_n_bytes -i 2\nsample_byte_format -s2 10\n");
+    big.extend([0x40, 0]);
+    assert_eq!(decode(&big[..], "a").unwrap().frames, [0.5]);
+    let mut mu = sphere("sample_count -i 2\nsample_n_bytes -i 1\nsample_coding -s4 ulaw\n");
+    mu.extend([0xFF, 0x80]);
+    let mu = decode(&mu[..], "a").unwrap().frames;
+    assert!(mu[0].abs() < 1e-3 && mu[1] > 0.9, "{mu:?}");
+    let mut a_law = sphere("sample_count -i 1\nsample_n_bytes -i 1\nsample_coding -s4 alaw\n");
+    a_law.push(0xAA);
+    assert!(decode(&a_law[..], "a").unwrap().frames[0] > 0.9);
+    let packed = "sample_n_bytes -i 2\nsample_byte_format -s2 01\nsample_coding -s26 pcm,embedded-shorten-v2.00\n";
+    let mut packed = sphere(&format!("sample_count -i 4\n{packed}"));
+    packed.extend(shorten::tests::pack(&[16_384, 0, -16_384, 8192], 1));
+    assert_eq!(
+        decode(&packed[..], "a").unwrap().frames,
+        [0.5, 0.0, -0.5, 0.25]
+    );
+    let odd =
+        sphere("sample_count -i 4\nsample_n_bytes -i 2\nsample_coding -s3 pcm,embedded-wavpack\n");
+    let error = decode(&odd[..], "a").unwrap_err();
+    assert!(error.to_string().contains("wavpack"), "{error}");
+}
+
+proptest! {
+    /// Whatever follows the magic word is read or refused.
+    #[test]
+    fn no_sphere_file_makes_it_panic(
+        lines in prop::collection::vec((
+            prop::sample::select(vec![
+                "sample_rate", "sample_count", "channel_count", "sample_n_bytes",
+                "sample_byte_format", "sample_coding", "end_head",
+            ]),
+            prop_oneof![
+                "-?[0-9]{1,20}",
+                prop::sample::select(vec![
+                    "10", "01", "ulaw", "alaw", "pcm", "16000", "1", "2", "pcm,embedded-shorten-v2.00",
+                ]).prop_map(String::from),
+                "\\PC{0,8}",
+            ],
+        ), 0..8),
+        size in prop_oneof!["   1024", " +[0-9]{1,6}", "\\PC{7}"],
+        rest in prop::collection::vec(any::<u8>(), 0..300),
+    ) {
+        let mut b = format!("NIST_1A\n{size}\n").into_bytes();
+        for (key, value) in lines {
+            b.extend(format!("{key} -i {value}\n").into_bytes());
+        }
+        b.resize(b.len().max(1024), b' ');
+        b.extend(rest);
+        if let Ok(sound) = decode(&b[..], "a") {
+            prop_assert!(sound.frames.iter().all(|x| x.is_finite()));
+        }
+    }
+}
+
 #[test]
 fn what_is_no_sound_is_said_in_one_sentence_that_names_the_file() {
     let good = wav(16_000, 1, 16, false);
