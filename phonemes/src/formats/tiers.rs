@@ -146,7 +146,7 @@ fn first(
     let more = found.count();
     if more > 0 {
         let text = format!(
-            "{} tiers hold {kind}; the first, number {}, is read; choose another with --tier",
+            "{} tiers hold {kind}; the first, number {}, is read; choose another with --label-tier",
             more + 1,
             index + 1,
         );
