@@ -316,7 +316,7 @@ pub struct LabelsArgs {
     #[arg(long, value_name = "A", value_parser = values::alphabet())]
     pub alphabet: Option<Alphabet>,
     /// The tier to read of a TextGrid, by its name or its number from 1 [default: phones, else words]
-    #[arg(long, value_name = "NAME")]
+    #[arg(long, alias = "tier", value_name = "NAME")]
     pub label_tier: Option<String>,
     /// Pronunciations of words, as in the CMU dictionary, for labels that hold words alone
     #[arg(long, value_name = "F")]

@@ -219,3 +219,64 @@ fn labels_on_standard_input_are_read() {
     let finished = binary::run(&["curves", "--labels", "-"]);
     assert!(finished.expect_sentence(1).contains("stdin"));
 }
+
+/// Guards labels of other programs from end to end: told by their content, written as another format,
+/// and as TIMIT again the same.
+#[test]
+fn other_programs_labels_are_told_read_and_written() {
+    let folder = tempfile::tempdir().unwrap();
+    let file = |name: &str| folder.path().join(name).to_string_lossy().into_owned();
+    let festival = "#\n0.2000 100 pau\n0.2600 100 hh\n0.4600 100 ay\n0.6000 100 pau\n";
+    let flite = "pau:0.200 hh:0.260 ay:0.460 pau:0.600 \n";
+    let mbrola = "_ 200\nh 60 0 120\naI 200\n_ 140\n";
+    let timit = "0 3200 pau\n3200 4160 hh\n4160 7360 ay\n7360 9600 pau\n";
+    for (name, text) in [("a.lab", festival), ("a.txt", flite), ("a.pho", mbrola)] {
+        fs::write(file(name), text).unwrap();
+        for format in ["xlabel", "textgrid", "ndjson"] {
+            let (from, written) = (file(name), file("written"));
+            binary::run(&["labels", &from, "--to", format, "-o", &written]).expect_done();
+            let back = binary::run(&["labels", &written, "--from", "auto"]);
+            assert_eq!(back.expect_done().text(), timit, "{name} by {format}");
+        }
+    }
+}
+
+/// Guards the choice of a tier, and what is said where there is none of the name.
+#[test]
+fn a_tier_is_read_by_its_name() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("a.TextGrid");
+    let tier =
+        |name: &str, text: &str| format!("\"IntervalTier\" \"{name}\" 0 1 1\n0 1 \"{text}\"\n");
+    let head = "File type = \"ooTextFile\"\nObject class = \"TextGrid\"\n\n0 1 <exists> 2\n";
+    let text = format!(
+        "{head}{}{}",
+        tier("ann", "i\u{2d0}"),
+        tier("bob", "u\u{2d0}")
+    );
+    fs::write(&path, text).unwrap();
+    let path = path.to_string_lossy();
+    let read = |more: &[&str]| binary::run(&[&["labels", &path][..], more].concat());
+    let bob = read(&["--label-tier", "Bob", "--alphabet", "ipa"]);
+    assert_eq!(bob.expect_done().text(), "0 16000 uw\n");
+    assert_eq!(read(&[]).expect_done().text(), "0 16000 iy\n");
+    let none = read(&["--label-tier", "eve"]);
+    assert!(none.expect_sentence(1).contains("name one of `ann`, `bob`"));
+}
+
+/// Guards sources that time words alone: they get the phones of their pronunciation.
+#[test]
+fn words_alone_become_phones() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("a.json");
+    let text = r#"{"words": [{"word": "bob", "start": 0.1, "end": 0.6}]}"#;
+    fs::write(&path, text).unwrap();
+    let finished = binary::run(&["labels", &path.to_string_lossy()]);
+    let text = finished.expect_done().text();
+    let phones: Vec<_> = text.lines().filter_map(|l| l.split(' ').nth(2)).collect();
+    assert_eq!(phones, ["b", "aa", "b"]);
+    assert!(
+        text.starts_with("1600 ") && text.ends_with("9600 b\n"),
+        "{text}"
+    );
+}
