@@ -5,7 +5,7 @@ use std::path::Path;
 use std::sync::Arc;
 
 use anyhow::bail;
-use mouthpiece_phonemes::{Labels, ReadOptions, SampleRate, Segment, Warning, check};
+use mouthpiece_phonemes::{Labels, ReadOptions, SampleRate, Segment, Warning, check, spread};
 use mouthpiece_rig::TICK_RATE;
 
 use crate::cli::{InputArgs, TextArgs, Usage};
@@ -47,7 +47,10 @@ impl Utterance {
                 options.alphabet = args.alphabet;
                 options.tier = args.label_tier.clone();
                 options.pronouncer = dictionary::read(args.dictionary.as_deref())?;
-                let labels = read_labels(path, args.from.as_deref(), &options)?;
+                let mut labels = read_labels(path, args.from.as_deref(), &options)?;
+                if let (true, Some(own)) = (labels.segments.is_empty(), &options.pronouncer) {
+                    labels.segments = own.spread(&labels.words);
+                }
                 let sound = args.audio.as_deref().map(wav::read).transpose()?;
                 (path.display().to_string(), labels, sound)
             }
@@ -104,9 +107,13 @@ impl Utterance {
         })
     }
 
-    fn new(name: &str, labels: Labels, sound: Option<Vec<f32>>) -> anyhow::Result<Self> {
+    fn new(name: &str, mut labels: Labels, sound: Option<Vec<f32>>) -> anyhow::Result<Self> {
         if labels.segments.is_empty() {
-            bail!("{name} holds words but no phones; give the phone labels (.PHN)");
+            labels.segments = spread(&labels.words);
+            tracing::info!("{name} holds words alone; their phones are those of a dictionary");
+        }
+        if labels.segments.is_empty() {
+            bail!("{name} holds nothing that can be spoken; give phone labels, or words");
         }
         let sound_ticks = sound.as_ref().map(|frames| frames.len() as i64);
         let ticks = labels.end().max(sound_ticks.unwrap_or(0));
