@@ -5,7 +5,7 @@
 //! before. TIMIT has a label of its own for them, so that is what they become. A stop whose closure is
 //! voiced keeps its one label; speech parts that itself.
 
-use mouthpiece_phonemes::{Phone, Segment};
+use mouthpiece_phonemes::Segment;
 
 /// What still counts as silence: digital silence, with what our resampler's filter adds at its edges.
 const SILENCE: f32 = 0.002;
@@ -65,6 +65,7 @@ fn silence_before(sound: &[f32], at: i64) -> i64 {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use mouthpiece_phonemes::Phone;
     use proptest::prelude::*;
 
     /// A vowel, 40 ms of silence and a burst: the silence becomes the closure.
