@@ -65,7 +65,7 @@ pub(crate) struct Detail {
     pub(crate) eye_map: u32,
     /// Side of the key light's shadow map in texels.
     pub(crate) shadow_map: u32,
-    /// Reads of the shadow map a pixel: 1, 4 or 9.
+    /// Reads of the shadow map a pixel: 1, 2 or 9.
     pub(crate) shadow_taps: u32,
     /// Anisotropic samples; costly in software.
     pub(crate) anisotropy: u16,
@@ -120,7 +120,7 @@ impl Tier {
                 eye_map: 512,
                 hair_map: 768,
                 shadow_map: 384,
-                shadow_taps: 4,
+                shadow_taps: 2,
                 anisotropy: 1,
             },
             Self::High => Detail {
