@@ -2,7 +2,7 @@
 //! in order; and what was read can be written in each format that can say it, and reads back.
 
 use mouthpiece_phonemes::{
-    Alphabet, Labels, ReadOptions, Reader, SampleRate, Source, WRITERS, Writer, check, reader,
+    Alphabet, Labels, ReadOptions, SampleRate, Source, WRITERS, check, reader,
 };
 
 /// Reads `bytes` as a file of `format`. The length of the file chooses what else is asked for, so

@@ -99,7 +99,9 @@ impl Reader for Gentle {
             }
         }
         if let Some((line, count)) = unfound {
-            let text = format!("{count} words were not found in the sound; the mouth rests there");
+            let text = format!(
+                "words not found in the sound ({count}) are left out; the mouth rests there"
+            );
             sheet.notes.push(Note::at(line, text));
         }
         sheet.finish(options, Some(Alphabet::Arpabet), EXAMPLE)

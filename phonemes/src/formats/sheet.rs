@@ -235,7 +235,7 @@ impl<'a> Sheet<'a> {
         words.sort_by_key(|w| w.start);
         if let Some((line, count)) = shared {
             let text =
-                format!("{count} labels hold several words, which share the time by letters");
+                format!("labels of several words ({count}): the words share the time by letters");
             self.notes.push(Note::at(line, text));
         }
         Ok(words)

@@ -190,7 +190,7 @@ impl<'a> Reading<'a> {
             last_end = last_end.max(end);
         }
         if let Some((line, count)) = untimed {
-            let text = format!("{count} words have no times; the time between others is theirs");
+            let text = format!("words without times ({count}) get the time between others, if any");
             self.sheet.notes.push(Note::at(line, text));
         }
         Ok(())

@@ -110,7 +110,7 @@ fn json_of_aligners_is_read() {
     );
     assert_eq!(words(&gentle), "200 hi 500, 600 ho 900");
     assert_eq!(gentle.segments[1].stress, Some(Stress::Primary));
-    assert!(notes(&gentle).contains("1 words were not found in the sound"));
+    assert!(notes(&gentle).contains("words not found in the sound (1)"));
     let wanted = "0 pau 300, 300 b 450, 450 oy 800, 800 pau 1000";
     let mfa = sample("mfa-json/aligned.json");
     assert_eq!(phones(&mfa), wanted);
@@ -124,7 +124,7 @@ fn words_and_letters_become_phones() {
     let whisper = sample("whisper/x.json");
     // The number has no times: it gets those between its neighbours.
     assert_eq!(words(&whisper), "8 hello 410, 410 24 950, 950 world 1330");
-    assert!(notes(&whisper).contains("1 words have no times"));
+    assert!(notes(&whisper).contains("words without times (1)"));
     let first = whisper.segments.first().unwrap();
     assert_eq!((first.phone.code(), super::ms(first.start)), ("hh", 8));
     assert_eq!(words(&sample("whisper/chars.json")), "0 oh 200, 250 hi 500");
