@@ -68,9 +68,15 @@ impl Windows {
         let whole = half - self.inset;
         // A label is longer than the contact within it, unless the sound is held on purpose.
         let (long, held) = self.long;
-        let over = (half * 2 - long).clamp(0, held - long);
-        let more = (whole - self.half_core_max).max(0) * over / (held - long).max(1);
-        let half = whole.min(self.half_core_max + more).max(self.half_core_min);
+        let over = (half * 2 - long).max(0);
+        let half = if over >= held - long {
+            whole
+        } else {
+            let most = self.half_core_max;
+            let more = (whole - most).max(0) * over / (held - long);
+            whole.min(most + more)
+        };
+        let half = half.max(self.half_core_min);
         (middle.saturating_sub(half), middle.saturating_add(half))
     }
 

@@ -81,13 +81,21 @@ impl Window {
     }
 }
 
-fn power(x: &[f32]) -> f32 {
-    x.iter().map(|x| x * x).sum()
+/// The sum of products, in eight parts so that they can be worked out at once.
+fn product(a: &[f32], b: &[f32]) -> f32 {
+    let mut sums = [0.0_f32; 8];
+    // Spans are multiples of eight.
+    for (a, b) in a.chunks_exact(8).zip(b.chunks_exact(8)) {
+        for (sum, (a, b)) in sums.iter_mut().zip(a.iter().zip(b)) {
+            *sum += a * b;
+        }
+    }
+    sums.iter().sum()
 }
 
 fn frame(kept: &[f32; KEPT]) -> Frame {
     let now = &kept[LAG_MAX..];
-    let energy = power(now);
+    let energy = product(now, now);
     let db = 10.0 * (energy / SPAN as f32).max(1e-12).log10();
     let pitch = if db > FLOOR_DB {
         pitch(kept, energy)
@@ -102,8 +110,7 @@ fn pitch(kept: &[f32; KEPT], energy: f32) -> Option<f32> {
     let mut likeness = [0.0_f32; LAG_MAX + 1];
     for (lag, like) in likeness.iter_mut().enumerate().skip(LAG_MIN) {
         let then = &kept[LAG_MAX - lag..KEPT - lag];
-        let both: f32 = now.iter().zip(then).map(|(a, b)| a * b).sum();
-        *like = both / (energy * power(then)).sqrt().max(1e-9);
+        *like = product(now, then) / (energy * product(then, then)).sqrt().max(1e-9);
     }
     let most = likeness.iter().copied().fold(0.0, f32::max);
     if most < VOICED {
