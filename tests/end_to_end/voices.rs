@@ -72,16 +72,16 @@ fn a_spoken_video_is_as_long_as_its_sound() {
         let size = ["--size", "64x64", "--tier", "low", "--fps", "25"];
         let say = ["export", "--text", TEXT, "--tts", engine, "-o", &out];
         binary::run(&[&say[..], &size[..]].concat()).expect_done();
-        let curves = binary::run(&["curves", "--text", TEXT, "--tts", engine, "--rate", "1000"]);
+        let curves = binary::run(&["curves", "--text", TEXT, "--tts", engine, "--rate", "240"]);
         let times = Table::parse(&curves.expect_done().text()).column("time_s");
         let file = fs::read(&out).unwrap();
         let (picture, sound) = (mp4::track_of(&file, "vide"), mp4::track_of(&file, "soun"));
         let spoken_s = times.last().copied().unwrap_or(0.0);
         assert!((1.0..5.0).contains(&spoken_s), "{engine}: {spoken_s}");
-        // The last frame may reach past the sound by less than itself.
+        // The last frame may reach past the sound, and the sound past the last row, by less than itself.
         for (what, track) in [("picture", picture), ("sound", sound)] {
             let over = track.plays_s - spoken_s;
-            assert!((-0.002..0.042).contains(&over), "{engine}: {what} {over}");
+            assert!((-0.002..0.047).contains(&over), "{engine}: {what} {over}");
         }
     }
 }
