@@ -140,10 +140,8 @@ fn a_recording_is_aligned_with_its_text() {
         .map(|(a, b)| (a - b).abs() / 48)
         .collect();
     off.sort_unstable();
-    assert!(
-        off[off.len() / 2] <= 15 && off[off.len() - 1] <= 60,
-        "{off:?} ms"
-    );
+    // Of "I'm Mouthpiece" nobody can tell where one /m/ ends and the other begins.
+    assert!(off[off.len() - 2] <= 15, "{off:?} ms");
     let wrong = "There is another sentence altogether, and it is about something else, I believe.";
     let error = align(wrong, sound, "demo.wav").unwrap_err();
     assert!(matches!(error, VoiceError::NoFit { .. }), "{error}");
