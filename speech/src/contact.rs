@@ -69,7 +69,7 @@ impl Windows {
         // A label is longer than the contact within it, unless the sound is held on purpose.
         let (long, held) = self.long;
         let over = (half * 2 - long).max(0);
-        let half = if over >= held - long {
+        let half = if hold.kind == Contact::Teeth || over >= held - long {
             whole
         } else {
             let most = self.half_core_max;
