@@ -88,6 +88,8 @@ look_for_test() {
     has_alsa_pulse || missing libasound2-plugins "leads ALSA's sound to PulseAudio"
     has ffmpeg || missing ffmpeg "a second opinion on the videos that are written"
     has python3 || missing python3 "runs the live test"
+    has flite || missing flite "a voice, so that speaking a text is tested"
+    has espeak-ng || missing espeak-ng "another voice"
 }
 
 as_root() {
@@ -114,9 +116,9 @@ print_packages() {
     cat >&2 <<'LIST'
 setup: packages are installed for you on Debian and Ubuntu only; elsewhere:
   Fedora  sudo dnf install gcc gcc-c++ make pkgconf-pkg-config alsa-lib-devel vulkan-loader mesa-vulkan-drivers libxkbcommon-x11 libX11-xcb libXcursor libXi libXrandr
-          for the live test: xorg-x11-server-Xvfb pulseaudio pulseaudio-utils alsa-plugins-pulseaudio ffmpeg-free python3
+          for the live test: xorg-x11-server-Xvfb pulseaudio pulseaudio-utils alsa-plugins-pulseaudio ffmpeg-free python3 flite espeak-ng
   Arch    sudo pacman -S --needed base-devel alsa-lib vulkan-icd-loader vulkan-swrast libxkbcommon-x11 libx11 libxcursor libxi libxrandr
-          for the live test: xorg-server-xvfb pulseaudio alsa-plugins ffmpeg python
+          for the live test: xorg-server-xvfb pulseaudio alsa-plugins ffmpeg python espeak-ng
           (vulkan-swrast draws on the processor; a graphics card has its own: vulkan-radeon, vulkan-intel, nvidia-utils)
 LIST
 }
