@@ -272,7 +272,7 @@ pub struct LookArgs {
 #[command(
     after_help = "Columns: time_s, one per control, then measured on the simulated head: aperture_mm, width_mm, \
                   protrusion_mm, jaw_rad, lip_teeth_mm.\n\n\
-                  Examples:\n  mouthpiece curves --labels hello.phn\n  mouthpiece curves --labels hello.phn --audio hello.wav --rate 50 -o hello.json"
+                  Examples:\n  mouthpiece curves --labels hello.phn\n  mouthpiece curves --demo --as arkit --rate 60 -o demo.csv\n  mouthpiece curves --labels hello.phn --audio hello.wav --rate 50 -o hello.json"
 )]
 pub struct CurvesArgs {
     #[command(flatten)]
@@ -283,6 +283,9 @@ pub struct CurvesArgs {
     /// Where to write, .csv or .json [default: CSV on standard output]
     #[arg(short, long, value_name = "F")]
     pub output: Option<PathBuf>,
+    /// For another avatar, in its own words, instead of the columns below
+    #[arg(long = "as", value_enum, value_name = "SET", conflicts_with = "json")]
+    pub avatar: Option<AvatarArg>,
     /// JSON whatever the name
     #[arg(long)]
     pub json: bool,
@@ -297,6 +300,17 @@ pub struct CurvesArgs {
     pub mood: MoodArgs,
     #[command(flatten)]
     pub cast: CastArgs,
+}
+
+/// What other avatars are driven by.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub enum AvatarArg {
+    /// ARKit's 52 blend shapes, a CSV as Live Link Face records it (take --rate 60)
+    Arkit,
+    /// The 15 visemes of Oculus LipSync as weights that add up to 1, CSV
+    Oculus,
+    /// MPEG-4's facial animation parameters of the mouth, a .fap text
+    Fap,
 }
 
 /// Read a label file, check it, and write it as another

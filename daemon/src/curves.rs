@@ -8,6 +8,7 @@ use std::fmt::Write as _;
 
 use mouthpiece_rig::{Control, Measures, TICK_RATE, measure};
 
+use crate::avatar;
 use crate::cli::{CurvesArgs, Fps};
 use crate::input::Utterance;
 use crate::interrupt;
@@ -40,7 +41,12 @@ pub fn run(args: &CurvesArgs) -> anyhow::Result<()> {
         let end = utterance.ticks;
         move |&k| rate.ticks(k) <= end
     });
-    let instants = Instants::start(cast.head.clone(), part, rows.map(move |k| rate.ticks(k)))?;
+    let times = rows.map(move |k| rate.ticks(k));
+    let start = || Instants::start(cast.head.clone(), part, times);
+    if let Some(avatar) = args.avatar {
+        return avatar::write(avatar, args, &cast, &utterance, start);
+    }
+    let instants = start()?;
     let json = args.json
         || args
             .output

@@ -6,6 +6,7 @@
 //! | [`input`] | labels and sound, from files or the demo |
 //! | [`pipeline`] | labels to key frames, offline: what export, curves and still share |
 //! | [`export`], [`curves`], [`labels`], [`still`], [`bench`](mod@bench), [`doctor`] | the commands of these names |
+//! | [`avatar`] | curves for other avatars: ARKit, visemes, FAPs |
 //! | [`head`] | the head shop: `mouthpiece head …` |
 //! | [`live`] | `run` and `say`: window, sound, sockets and the clock |
 //! | [`voices`] | speech engines of this machine, and labels for recordings |
@@ -19,6 +20,7 @@
     reason = "nothing is exported from a binary; pub means: for the other modules"
 )]
 
+mod avatar;
 mod bench;
 mod cli;
 mod curves;

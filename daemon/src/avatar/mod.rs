@@ -1,0 +1,120 @@
+//! `mouthpiece curves --as …`: the same speech in the words of other avatars.
+//!
+//! | module | writes |
+//! |---|---|
+//! | [`arkit`] | ARKit's 52 blend shapes, as Live Link Face records them |
+//! | [`visemes`] | the 15 visemes of Oculus LipSync, as weights that add up to 1 |
+//! | [`fap`] | MPEG-4's facial animation parameters of the mouth |
+//!
+//! Shapes and parameters are read off the simulated head, visemes off the labels alone: another
+//! avatar brings its own lips to those. Nothing is sent anywhere; these are files.
+
+mod arkit;
+mod fap;
+mod visemes;
+
+use crate::cli::{AvatarArg, CurvesArgs, Fps, Usage};
+use crate::input::Utterance;
+use crate::interrupt;
+use crate::media::output;
+use crate::pipeline::{Cast, Instants};
+
+/// A writer of one row an instant.
+trait Rows {
+    fn row(&mut self, k: u64, frame: &mouthpiece_rig::KeyFrame);
+    /// All of it.
+    fn finish(self: Box<Self>) -> String;
+}
+
+/// Writes what `instants` give, for the avatar that is asked for.
+pub fn write(
+    avatar: AvatarArg,
+    args: &CurvesArgs,
+    cast: &Cast,
+    utterance: &Utterance,
+    instants: impl FnOnce() -> anyhow::Result<Instants>,
+) -> anyhow::Result<()> {
+    let json = args.output.as_deref().and_then(|p| p.extension());
+    if json.is_some_and(|e| e == "json") {
+        return Err(Usage("curves --as writes text; name the output .csv or .fap".into()).into());
+    }
+    let rate = args.rate;
+    let mut rows: Box<dyn Rows> = match avatar {
+        AvatarArg::Oculus => {
+            let track = cast.speech.track(&utterance.segments);
+            let text = visemes::table(track.segments(), rate, utterance.ticks);
+            return output::write_or_print(args.output.as_deref(), &text);
+        }
+        AvatarArg::Arkit => Box::new(arkit::Table::new(&cast.head, rate)),
+        AvatarArg::Fap => Box::new(fap::Table::new(&cast.head, rate)?),
+    };
+    let instants = instants()?;
+    let mut k = 0;
+    while let Some(instant) = instants.next() {
+        interrupt::check()?;
+        rows.row(k, &instant.frame);
+        instants.recycle(instant);
+        k += 1;
+    }
+    instants.finish()?;
+    output::write_or_print(args.output.as_deref(), &rows.finish())
+}
+
+/// When row `k` is due, as HH:MM:SS:FF.mmm: frames within the second and thousandths of a frame,
+/// which differ from 0 only at rates like 30000/1001.
+fn timecode(rate: Fps, k: u64) -> String {
+    let (num, den) = (u64::from(rate.num), u64::from(rate.den));
+    let seconds = k * den / num;
+    let rest = k * den % num;
+    let (frame, part) = (rest / den, rest % den * 1000 / den);
+    let (hours, minutes) = (seconds / 3600, seconds / 60 % 60);
+    format!(
+        "{hours:02}:{minutes:02}:{:02}:{frame:02}.{part:03}",
+        seconds % 60
+    )
+}
+
+#[cfg(test)]
+mod tests {
+    use std::sync::Arc;
+
+    use super::*;
+    use crate::cli::CastArgs;
+    use crate::pipeline::{Instant, Part, Performance};
+    use mouthpiece_phonemes::{Phone, Segment};
+    use mouthpiece_rig::{Head, KeyFrame};
+
+    /// The built-in head in the middle of each phone's contact or vowel.
+    pub fn held(phones: &[Phone]) -> (Arc<Head>, Vec<KeyFrame>) {
+        let cast = Cast::load(&CastArgs::default()).unwrap();
+        let frame = |phone: &Phone| {
+            // A stop's contact is its closure's.
+            let phone = phone.closure().unwrap_or(*phone);
+            let segments = [
+                Segment::new(Phone::HSharp, 0, 9600),
+                Segment::new(phone, 9600, 19_200),
+                Segment::new(Phone::HSharp, 19_200, 28_800),
+            ];
+            let part = Part::new(&cast, &segments, None);
+            let mut instant = Instant::default();
+            Performance::new(Arc::clone(&cast.head), part).at(14_400, &mut instant);
+            instant.frame
+        };
+        let frames = phones.iter().map(frame).collect();
+        (Arc::clone(&cast.head), frames)
+    }
+
+    #[test]
+    fn a_timecode_counts_frames_within_seconds_of_real_time() {
+        let whole = Fps { num: 60, den: 1 };
+        assert_eq!(timecode(whole, 0), "00:00:00:00.000");
+        assert_eq!(timecode(whole, 60 * 3661 + 59), "01:01:01:59.000");
+        let ntsc = Fps {
+            num: 30000,
+            den: 1001,
+        };
+        assert_eq!(timecode(ntsc, 29), "00:00:00:29.000");
+        // Frame 30 is due at 1.001 s: 0.02997 frames into the second.
+        assert_eq!(timecode(ntsc, 30), "00:00:01:00.029");
+    }
+}
