@@ -10,7 +10,7 @@
 //! | [`espeak`] | espeak-ng, by the events of its library |
 //! | [`festival`] | festival, by a script in its own Scheme |
 //! | [`piper`] | Piper, by its Python package |
-//! | [`align`] | no voice: finds the phones of a text in a recording, by pocketsphinx |
+//! | [`mod@align`] | no voice: finds the phones of a text in a recording, by pocketsphinx |
 //! | [`closure`] | gives silence before a burst to the stop that it belongs to |
 //! | [`fit`] | makes labels end where the sound does |
 //! | [`refine`] | moves boundaries to where the sound changes |
@@ -65,7 +65,7 @@ pub enum Engine {
     Flite,
     /// English (Debian: festival, festvox-kallpc16k)
     Festival,
-    /// Natural voices of many languages (Python: piper-tts[alignment] and a voice)
+    /// Natural voices of many languages (Python: piper-tts with its extra "alignment", and a voice)
     Piper,
 }
 
