@@ -88,7 +88,10 @@ fn lash_vertex(in: PartVertex) -> LashFragment {
 @fragment
 fn lash(in: LashFragment) -> @location(0) vec4<f32> {
     if SAMPLES == 1u {
-        return vec4(developed(in.light.rgb).rgb, min(in.light.w, 1.0));
+        let cover = min(in.light.w, 1.0);
+        // A target that encodes sRGB blends light, not what is shown: what is nearly black must cover more to darken as much.
+        let of_light = 1.0 - pow(1.0 - cover, 2.2);
+        return vec4(developed(in.light.rgb).rgb, select(cover, of_light, DECODE_SRGB));
     }
     let samples = f32(SAMPLES);
     let covered = min(floor(in.light.w * samples), samples);
