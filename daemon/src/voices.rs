@@ -37,7 +37,9 @@ mod tests;
 use std::io::Read as _;
 use std::time::Duration;
 
-use mouthpiece_phonemes::{Labels, Segment, TICK_RATE};
+use mouthpiece_phonemes::{
+    Alphabet, LabelError, Labels, ReadOptions, Reader, Segment, Source, TICK_RATE,
+};
 
 use crate::media::wav::Sound;
 
@@ -175,6 +177,28 @@ fn clean(text: &str) -> Result<String, VoiceError> {
         return Err(VoiceError::NoText);
     }
     Ok(text)
+}
+
+/// What a voice of the Festival family printed, by the reader of its format.
+fn read_labels(
+    engine: &'static str,
+    format: &dyn Reader,
+    printed: &str,
+) -> Result<Labels, VoiceError> {
+    let source = Source {
+        name: engine,
+        bytes: printed.as_bytes(),
+    };
+    let mut options = ReadOptions::default();
+    options.alphabet = Some(Alphabet::Radio);
+    match format.read(&source, &options) {
+        // Who said nothing has no labels; that is judged once for all engines.
+        Err(LabelError::Empty { .. }) => Ok(Labels::default()),
+        read => read.map_err(|error| VoiceError::Failed {
+            engine,
+            why: error.to_string(),
+        }),
+    }
 }
 
 /// Sorts out what engines' labels may hold: none empty, none before the one before it.

@@ -6,16 +6,13 @@
 
 use std::process::Command;
 
-use mouthpiece_phonemes::{Alphabet, Labels, Notes, TICK_RATE, alphabet};
+use mouthpiece_phonemes::{Labels, formats};
 
 use super::error::VoiceError;
-use super::{Engine, child, patience, script};
+use super::{Engine, child, patience, read_labels, script};
 use crate::media::wav::{self, Sound};
 
 const NAME: &str = Engine::Festival.name();
-
-/// The latest end of a label that is believed: a day.
-const SECONDS_MAX: f64 = 86_400.0;
 
 /// Printed when all is done; festival ends with status 0 after an error too.
 const DONE: &str = "mouthpiece-done";
@@ -80,30 +77,7 @@ fn string(text: &str) -> String {
 
 /// Reads saved segments.
 fn labels(text: &str) -> Result<Labels, VoiceError> {
-    let mut segments = Vec::new();
-    let mut notes = Notes::default();
-    let mut start = 0;
-    let lines = text.lines().skip_while(|line| line.trim() != "#").skip(1);
-    for line in lines.filter(|line| !line.trim().is_empty()) {
-        let mut fields = line.split_whitespace();
-        let end = fields.next().and_then(|end| end.parse::<f64>().ok());
-        let end = end.filter(|end| (0.0..=SECONDS_MAX).contains(end));
-        let (Some(end), Some(symbol)) = (end, fields.nth(1)) else {
-            return Err(VoiceError::Failed {
-                engine: NAME,
-                why: format!("it saved `{line}` where `END 100 phone` was expected"),
-            });
-        };
-        let end = (end * TICK_RATE as f64).round() as i64;
-        let spoken = alphabet::segments(Alphabet::Radio, symbol, start, end, &mut segments);
-        notes.symbol(Alphabet::Radio, symbol, spoken, None);
-        start = end;
-    }
-    Ok(Labels {
-        segments,
-        notes: notes.finish(),
-        ..Labels::default()
-    })
+    read_labels(NAME, &formats::Xlabel, text)
 }
 
 #[cfg(test)]

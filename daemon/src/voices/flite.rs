@@ -9,10 +9,10 @@ use std::path::Path;
 use std::process::Command;
 use std::time::Duration;
 
-use mouthpiece_phonemes::{Alphabet, Labels, Notes, TICK_RATE, alphabet};
+use mouthpiece_phonemes::{Labels, formats};
 
 use super::error::VoiceError;
-use super::{Engine, child, patience, script};
+use super::{Engine, child, patience, read_labels, script};
 use crate::media::wav::{self, Sound};
 
 const NAME: &str = Engine::Flite.name();
@@ -22,9 +22,6 @@ const BEST_VOICE: &str = "slt";
 
 /// How long listing voices may take.
 const LIST_PATIENCE: Duration = Duration::from_secs(10);
-
-/// The latest end of a label that is believed: a day.
-const SECONDS_MAX: f64 = 86_400.0;
 
 /// Says `text`.
 pub fn speak(text: &str, voice: Option<&str>) -> Result<(Labels, Sound), VoiceError> {
@@ -80,31 +77,7 @@ fn voices() -> Result<Vec<String>, VoiceError> {
 
 /// Reads what `-psdur` printed.
 fn labels(printed: &str) -> Result<Labels, VoiceError> {
-    let mut segments = Vec::new();
-    let mut notes = Notes::default();
-    let (mut base, mut start) = (0, 0);
-    for line in printed.lines() {
-        for label in line.split_whitespace() {
-            let read = label.rsplit_once(':').and_then(|(symbol, end)| {
-                let end: f64 = end.parse().ok()?;
-                (0.0..=SECONDS_MAX).contains(&end).then_some((symbol, end))
-            });
-            let (symbol, end) = read.ok_or_else(|| VoiceError::Failed {
-                engine: NAME,
-                why: format!("it printed `{label}` where `phone:END` was expected"),
-            })?;
-            let end = base + (end * TICK_RATE as f64).round() as i64;
-            let spoken = alphabet::segments(Alphabet::Radio, symbol, start, end, &mut segments);
-            notes.symbol(Alphabet::Radio, symbol, spoken, None);
-            start = end;
-        }
-        base = start;
-    }
-    Ok(Labels {
-        segments,
-        notes: notes.finish(),
-        ..Labels::default()
-    })
+    read_labels(NAME, &formats::Flite, printed)
 }
 
 #[cfg(test)]
