@@ -5,7 +5,9 @@ use std::path::Path;
 use std::sync::Arc;
 
 use anyhow::bail;
-use mouthpiece_phonemes::{Labels, ReadOptions, SampleRate, Segment, Warning, check, spread};
+use mouthpiece_phonemes::{
+    Alphabet, Labels, ReadOptions, SampleRate, Segment, Warning, check, spread,
+};
 use mouthpiece_rig::TICK_RATE;
 
 use crate::cli::{InputArgs, TextArgs, Usage};
@@ -43,10 +45,12 @@ impl Utterance {
         }
         let (name, labels, sound) = match &args.labels {
             Some(path) => {
-                let mut options = ReadOptions::at(rate);
-                options.alphabet = args.alphabet;
-                options.tier = args.label_tier.clone();
-                options.pronouncer = dictionary::read(args.dictionary.as_deref())?;
+                let options = read_options(
+                    rate,
+                    args.alphabet,
+                    args.label_tier.as_deref(),
+                    args.dictionary.as_deref(),
+                )?;
                 let mut labels = read_labels(path, args.from.as_deref(), &options)?;
                 if let (true, Some(own)) = (labels.segments.is_empty(), &options.pronouncer) {
                     labels.segments = own.spread(&labels.words);
@@ -141,6 +145,20 @@ impl Utterance {
             ticks,
         })
     }
+}
+
+/// What the user says of labels that their file does not.
+pub fn read_options(
+    rate: SampleRate,
+    alphabet: Option<Alphabet>,
+    tier: Option<&str>,
+    dictionary: Option<&Path>,
+) -> anyhow::Result<ReadOptions> {
+    let mut options = ReadOptions::at(rate);
+    options.alphabet = alphabet;
+    options.tier = tier.map(str::to_owned);
+    options.pronouncer = dictionary::read(dictionary)?;
+    Ok(options)
 }
 
 /// Reads a label file, `-` for standard input.

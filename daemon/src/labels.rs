@@ -2,20 +2,21 @@
 
 use std::path::Path;
 
-use mouthpiece_phonemes::{ReadOptions, SampleRate, TICK_RATE, Writer as _, check, timit, writer};
+use mouthpiece_phonemes::{SampleRate, TICK_RATE, Writer as _, check, timit, writer};
 use serde_json::json;
 
 use crate::cli::LabelsArgs;
-use crate::dictionary;
-use crate::input::read_labels;
+use crate::input::{read_labels, read_options};
 use crate::media::output;
 
 /// Runs the command.
 pub fn run(args: &LabelsArgs) -> anyhow::Result<()> {
-    let mut options = ReadOptions::at(SampleRate::new(args.rate)?);
-    options.alphabet = args.alphabet;
-    options.tier = args.label_tier.clone();
-    options.pronouncer = dictionary::read(args.dictionary.as_deref())?;
+    let options = read_options(
+        SampleRate::new(args.rate)?,
+        args.alphabet,
+        args.label_tier.as_deref(),
+        args.dictionary.as_deref(),
+    )?;
     let labels = read_labels(&args.file, args.from.as_deref(), &options)?;
     let name = match &args.file {
         path if path == Path::new("-") => "<stdin>".into(),
