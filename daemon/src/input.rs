@@ -90,9 +90,6 @@ impl Utterance {
                 .into());
             }
         };
-        for note in &spoken.labels.notes {
-            tracing::warn!("{}: {note}", spoken.name);
-        }
         Self::new(&spoken.name, spoken.labels, Some(spoken.sound.frames))
     }
 
@@ -112,6 +109,9 @@ impl Utterance {
     }
 
     fn new(name: &str, mut labels: Labels, sound: Option<Vec<f32>>) -> anyhow::Result<Self> {
+        for note in &labels.notes {
+            tracing::warn!("{name}: {note}");
+        }
         if labels.segments.is_empty() {
             labels.segments = spread(&labels.words);
             tracing::info!("{name} holds words alone; their phones are those of a dictionary");
