@@ -12,12 +12,14 @@ use mouthpiece_rig::TICK_RATE;
 use mouthpiece_speech::{Delivery, Speech, Track};
 use tokio::sync::mpsc;
 
+use std::sync::Arc;
 use std::thread::Thread;
 use std::time::Duration;
 
 use super::sound::Output;
 use super::time::Flow;
 use super::utterance::{Begin, Utterance};
+use super::vitals::{DeviceState, Vitals};
 
 /// Commands that wait for the sound thread; who sends more waits.
 pub const COMMANDS_MAX: usize = 64;
@@ -85,6 +87,7 @@ pub struct Conductor {
     look_ahead: i64,
     block: Vec<f32>,
     quit: bool,
+    vitals: Arc<Vitals>,
 }
 
 impl Conductor {
@@ -95,6 +98,7 @@ impl Conductor {
         face: Option<Thread>,
         speech: Speech,
         look_ahead: i64,
+        vitals: Arc<Vitals>,
     ) -> Self {
         Self {
             output,
@@ -106,6 +110,7 @@ impl Conductor {
             look_ahead,
             block: vec![0.0; super::sound::BLOCK_TICKS],
             quit: false,
+            vitals,
         }
     }
 
@@ -141,7 +146,13 @@ impl Conductor {
             Command::Segments(key, segments) => {
                 let audible = self.output.audible(now_ns);
                 if let Some(utterance) = self.find(key) {
+                    let (sent, before) = (segments.len(), utterance.dropped());
+                    let begun = utterance.start.is_some();
                     let segments = utterance.add_labels(segments, audible);
+                    let dropped = utterance.dropped() - before;
+                    let late = if begun { sent - segments.len() } else { 0 };
+                    self.vitals.sound.dropped_labels.add(late as u64);
+                    self.vitals.sound.dropped.add(dropped.unsigned_abs());
                     if !segments.is_empty() {
                         self.cue(Cue::Segments { key, segments });
                     }
@@ -156,16 +167,19 @@ impl Conductor {
             Command::Fail(key, code, message) => {
                 if let Some(utterance) = self.remove(key) {
                     utterance.tell_failed(code, message);
+                    self.vitals.sound.failed.add(1);
                     self.silence(vec![utterance], now_ns, |_, _| {});
                 }
             }
             Command::Stop(Some(key)) => {
                 if let Some(utterance) = self.remove(key) {
+                    self.vitals.sound.stopped.add(1);
                     self.silence(vec![utterance], now_ns, Utterance::tell_stopped);
                 }
             }
             Command::Stop(None) => {
                 let all = std::mem::take(&mut self.utterances);
+                self.vitals.sound.stopped.add(all.len() as u64);
                 self.silence(all, now_ns, Utterance::tell_stopped);
             }
             Command::Quit => self.quit = true,
@@ -174,11 +188,13 @@ impl Conductor {
 
     fn begin(&mut self, begin: Begin) {
         let utterance = Utterance::new(begin);
+        self.vitals.sound.begun.add(1);
         if self.utterances.len() >= UTTERANCES_MAX {
             utterance.tell_failed(
                 ErrorCode::Busy,
                 format!("{UTTERANCES_MAX} utterances wait already; begin when one has ended"),
             );
+            self.vitals.sound.failed.add(1);
             return;
         }
         self.utterances.push(utterance);
@@ -197,8 +213,11 @@ impl Conductor {
                 now_ns,
             );
         } else if let Some(utterance) = self.find(key) {
+            let before = utterance.dropped();
             let delivery = utterance.add_sound(mono, written);
-            if utterance.start.is_some() {
+            let (begun, dropped) = (utterance.start.is_some(), utterance.dropped() - before);
+            self.vitals.sound.dropped.add(dropped.unsigned_abs());
+            if begun {
                 self.cue(Cue::Heard { key, delivery });
             }
         }
@@ -280,6 +299,7 @@ impl Conductor {
             utterance.tell_position(audible);
             if utterance.end().is_some_and(|end| end <= audible) {
                 utterance.tell_finished();
+                self.vitals.sound.finished.add(1);
                 over.push(utterance.key);
             } else if let Some(start) = utterance.start
                 && !utterance.ended
@@ -289,6 +309,7 @@ impl Conductor {
                     ErrorCode::Busy,
                     "nothing came for ten seconds; the utterance is over".to_owned(),
                 );
+                self.vitals.sound.failed.add(1);
                 over.push(utterance.key);
             }
         }
@@ -296,6 +317,19 @@ impl Conductor {
             self.remove(key);
             self.cue(Cue::Done { key });
         }
+        let held: i64 = self.utterances.iter().map(Utterance::sound_ticks).sum();
+        let vitals = &self.vitals.sound;
+        vitals.queue.set(self.utterances.len() as i64);
+        vitals.held.set(held);
+        vitals.audible.set(audible);
+        vitals.underruns.set(self.output.underruns());
+        vitals.set_device(if self.output.has_device() {
+            DeviceState::Playing
+        } else if self.output.wants_device() {
+            DeviceState::Missing
+        } else {
+            DeviceState::Unwanted
+        });
     }
 
     fn find(&mut self, key: u64) -> Option<&mut Utterance> {

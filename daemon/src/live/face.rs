@@ -8,6 +8,7 @@
 //! rewinds it: it takes up the kept frame at the audible instant (or later, where the change is
 //! felt later) and simulates again from there under a new epoch.
 
+use std::sync::Arc;
 use std::time::Duration;
 
 use crossbeam::channel::{Receiver, TryRecvError};
@@ -16,8 +17,10 @@ use mouthpiece_rig::{Controls, KeyFrame, STEP_TICKS, Simulation, TICK_RATE};
 use super::clock::AudibleClock;
 use super::conductor::Cue;
 use super::frames::FrameWriter;
+use super::motion::Motion;
 use super::score::Score;
 use super::time::{Flow, ns_from_ticks, seconds};
+use super::vitals::Vitals;
 
 /// How far the simulation runs ahead of what is heard: covers for a thread that is not let run.
 pub const LEAD_TICKS: i64 = TICK_RATE / 4;
@@ -76,6 +79,8 @@ pub struct Face<B> {
     kept: Vec<KeyFrame>,
     kept_next: usize,
     epoch: u32,
+    motion: Motion,
+    vitals: Arc<Vitals>,
 }
 
 impl<B: Body> Face<B> {
@@ -85,6 +90,7 @@ impl<B: Body> Face<B> {
         clock: AudibleClock,
         cues: Receiver<Cue>,
         frames: FrameWriter,
+        vitals: Arc<Vitals>,
     ) -> Self {
         let mut face = Self {
             body,
@@ -95,8 +101,10 @@ impl<B: Body> Face<B> {
             kept: Vec::with_capacity(KEPT),
             kept_next: 0,
             epoch: 0,
+            motion: Motion::default(),
+            vitals,
         };
-        face.publish();
+        face.publish(face.vitals.origin.now_ns());
         face
     }
 
@@ -118,6 +126,7 @@ impl<B: Body> Face<B> {
             self.skip_to(audible);
         }
         let ahead = self.body.time() - audible;
+        self.vitals.simulation.lead.set(ahead);
         if ahead >= LEAD_TICKS {
             let spare = ns_from_ticks(ahead - LEAD_TICKS + FRAME_TICKS);
             let nap = Duration::from_nanos(u64::try_from(spare).unwrap_or(0));
@@ -129,7 +138,7 @@ impl<B: Body> Face<B> {
             let controls = self.score.controls_at(self.body.time() + STEP_TICKS);
             self.body.step(&controls);
         }
-        self.publish();
+        self.publish(now_ns);
         Flow::Continue
     }
 
@@ -142,6 +151,7 @@ impl<B: Body> Face<B> {
         if frame.time >= self.body.time() {
             return;
         }
+        self.vitals.simulation.rewinds.add(1);
         self.epoch = self.epoch.wrapping_add(1);
         self.body.restore(frame);
         self.body.set_epoch(self.epoch);
@@ -154,6 +164,7 @@ impl<B: Body> Face<B> {
 
     /// Takes the head as it is to another time: the process was suspended, or the machine too slow.
     fn skip_to(&mut self, time: i64) {
+        self.vitals.simulation.skips.add(1);
         tracing::warn!(
             behind_s = seconds(time - self.body.time()),
             "the simulation was left behind and skips to what is heard now"
@@ -166,13 +177,18 @@ impl<B: Body> Face<B> {
     }
 
     /// Sends the present state to the renderer, and keeps it.
-    fn publish(&mut self) {
+    fn publish(&mut self, now_ns: i64) {
         let Self { body, frames, .. } = self;
         frames.write(|frame| body.save(frame));
         if self.kept.len() < KEPT {
             self.kept.push(KeyFrame::default());
         }
-        self.body.save(&mut self.kept[self.kept_next]);
+        let kept = &mut self.kept[self.kept_next];
+        self.body.save(kept);
+        self.vitals.simulation.key_frames.add(1);
+        if self.motion.differs(kept) {
+            self.vitals.simulation.moved_ns.set(now_ns);
+        }
         self.kept_next = (self.kept_next + 1) % KEPT;
     }
 }

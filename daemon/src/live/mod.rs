@@ -9,7 +9,8 @@
 //! | `net` | [`server`], [`connection`] | sockets; nothing real-time |
 //!
 //! Between them: [`clock`] (which tick is heard now), [`frames`] (key frames, with epochs), bounded
-//! channels for commands, cues and answers. [`player`] puts them together. [`speaker`] is what `say`
+//! channels for commands, cues and answers. [`player`] puts them together. [`vitals`] is what each says of itself,
+//! [`motion`] whether the face moves. [`speaker`] is what `say`
 //! does without a daemon, [`client`] what it does with one; both take their utterance from [`source`].
 //! [`sync`] is a test of sound against picture, judged from outside. All time is [`time`]'s.
 
@@ -21,6 +22,7 @@ mod conductor;
 mod connection;
 mod face;
 mod frames;
+mod motion;
 mod player;
 mod score;
 mod server;
@@ -31,6 +33,7 @@ mod stop;
 mod sync;
 mod time;
 mod utterance;
+pub mod vitals;
 mod window;
 
 /// With this, allocating in the device's callback ends the process at once.

@@ -19,6 +19,7 @@ use super::score::Score;
 use super::sound::{Choice, Output};
 use super::time::{Origin, drive};
 use super::utterance::Begin;
+use super::vitals::Vitals;
 use crate::pipeline::Cast;
 
 /// The head is settled by this much motion before anything is shown.
@@ -39,6 +40,8 @@ pub struct Sight {
     pub clock: AudibleClock,
     /// Process time.
     pub origin: Origin,
+    /// Where the window says how it is.
+    pub vitals: Arc<Vitals>,
 }
 
 /// Sends utterances to the sound thread. Clones reach the same one.
@@ -46,6 +49,7 @@ pub struct Sight {
 pub struct Handle {
     commands: mpsc::Sender<Command>,
     keys: Arc<AtomicU64>,
+    vitals: Arc<Vitals>,
 }
 
 impl Player {
@@ -59,6 +63,7 @@ impl Player {
     ) -> Result<(Self, Sight)> {
         let origin = Origin::new();
         let cell = Arc::new(ClockCell::default());
+        let vitals = Arc::new(Vitals::new(origin));
         let (commands, inbox) = mpsc::channel(COMMANDS_MAX);
         let (cue, cues) = crossbeam::channel::bounded(CUES_MAX);
         let (writer, frames) = key_frames();
@@ -66,13 +71,14 @@ impl Player {
         let score = Score::new(&cast.speech, Idle::new(seed));
         let clock = AudibleClock::new(Arc::clone(&cell));
         let mut body = Simulation::new(Arc::clone(&cast.head));
+        let face_vitals = Arc::clone(&vitals);
         let simulation = spawn("simulation", move || {
             body.set_time(-PRE_ROLL_TICKS);
             while body.time() < 0 {
                 let controls = score.controls_at(body.time());
                 body.step(&controls);
             }
-            let mut face = Face::new(body, score, clock, cues, writer);
+            let mut face = Face::new(body, score, clock, cues, writer, face_vitals);
             drive(|| face.step(origin.now_ns()));
         })?;
 
@@ -80,12 +86,21 @@ impl Player {
         let speech = cast.speech.clone();
         let look_ahead = i64::from(look_ahead_ms) * TICK_RATE / 1000;
         let sound_cell = Arc::clone(&cell);
+        let sound_vitals = Arc::clone(&vitals);
         let (opened, has_sound) = std::sync::mpsc::sync_channel(1);
         let sound = spawn("sound", move || {
             let output = Output::open(choice, sound_cell, origin);
             // Nobody waits for it only when the start itself failed.
             let _ = opened.send(output.has_device());
-            let mut conductor = Conductor::new(output, inbox, cue, Some(face), speech, look_ahead);
+            let mut conductor = Conductor::new(
+                output,
+                inbox,
+                cue,
+                Some(face),
+                speech,
+                look_ahead,
+                sound_vitals,
+            );
             drive(|| conductor.step(origin.now_ns()));
         })?;
 
@@ -93,6 +108,7 @@ impl Player {
             handle: Handle {
                 commands,
                 keys: Arc::default(),
+                vitals: Arc::clone(&vitals),
             },
             threads: vec![sound, simulation],
             has_sound: has_sound.recv().unwrap_or(false),
@@ -101,6 +117,7 @@ impl Player {
             frames,
             clock: AudibleClock::new(cell),
             origin,
+            vitals,
         };
         Ok((player, sight))
     }
@@ -135,6 +152,11 @@ impl Handle {
     /// A number that no other utterance has.
     pub fn new_key(&self) -> u64 {
         self.keys.fetch_add(1, Ordering::Relaxed)
+    }
+
+    /// What the live threads say of themselves.
+    pub fn vitals(&self) -> &Arc<Vitals> {
+        &self.vitals
     }
 
     pub async fn begin(&self, begin: Begin) {

@@ -98,11 +98,18 @@ impl Server {
                 Ok(permit) => {
                     let (handle, limits) = (handle.clone(), self.limits.clone());
                     tokio::spawn(async move {
+                        let net = &Arc::clone(handle.vitals()).net;
+                        net.connected.add(1);
+                        net.clients.add(1);
                         connection::serve(stream, handle, limits).await;
+                        net.clients.add(-1);
                         drop(permit);
                     });
                 }
-                Err(_) => turn_away(stream).await,
+                Err(_) => {
+                    handle.vitals().net.turned_away.add(1);
+                    turn_away(stream).await;
+                }
             }
         }
     }

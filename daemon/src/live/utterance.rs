@@ -151,6 +151,11 @@ impl Utterance {
         kept
     }
 
+    /// How much of it came too late for its place, ticks.
+    pub(super) fn dropped(&self) -> i64 {
+        self.dropped
+    }
+
     /// Adds its sound of the ticks from `at` on to `block`.
     pub(super) fn mix(&self, at: i64, block: &mut [f32]) {
         let Some(start) = self.start else { return };

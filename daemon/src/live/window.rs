@@ -22,9 +22,10 @@ use winit::keyboard::{Key, NamedKey};
 use winit::monitor::MonitorHandle;
 use winit::window::{Fullscreen, Window, WindowId};
 
+use super::motion::Motion;
 use super::player::Sight;
 use super::sync::Flash;
-use super::time::ticks_from_ns;
+use super::time::{ns_from_ticks, ticks_from_ns};
 
 mod pace;
 
@@ -96,7 +97,9 @@ impl Display {
             flash,
             shown,
             frame: KeyFrame::default(),
+            heard: 0,
             last_tick: i64::MIN,
+            motion: Motion::default(),
             open: None,
             pace: Pace::default(),
             governor: Governor::default(),
@@ -118,7 +121,10 @@ struct App {
     flash: Option<Flash>,
     shown: Option<oneshot::Sender<()>>,
     frame: KeyFrame,
+    /// What was heard when the last picture was begun, and what it shows.
+    heard: i64,
     last_tick: i64,
+    motion: Motion,
     open: Option<Open>,
     pace: Pace,
     governor: Governor,
@@ -249,7 +255,7 @@ impl App {
         match self.picture(now_ns) {
             Ok(Outcome::Shown) => {
                 self.failures = 0;
-                self.pace.shown(now_ns, self.sight.origin.now_ns());
+                self.shown(now_ns, self.sight.origin.now_ns());
                 if let Some(shown) = self.shown.take() {
                     let _ = shown.send(()); // nobody waits any more
                 }
@@ -258,6 +264,7 @@ impl App {
             Ok(Outcome::Hidden) => self.pace.rest(now_ns, HIDDEN_NS),
             Err(error) => {
                 self.failures += 1;
+                self.sight.vitals.window.failures.add(1);
                 if self.failures >= FAILURES_MAX {
                     return self.give_up(events, error);
                 }
@@ -270,10 +277,23 @@ impl App {
         }
     }
 
+    /// A picture that was begun at `begun_ns` is on its way to the screen.
+    fn shown(&mut self, begun_ns: i64, now_ns: i64) {
+        let seen_ns = now_ns - begun_ns + self.pace.interval_ns() / 2;
+        let skew_ns = seen_ns - ns_from_ticks(self.last_tick - self.heard);
+        self.pace.shown(begun_ns, now_ns);
+        let moved = self.motion.differs(&self.frame);
+        let vitals = &self.sight.vitals.window;
+        vitals.shown(begun_ns, now_ns, moved, skew_ns);
+        if let Some(target) = self.open.as_ref().and_then(|o| o.target.as_ref()) {
+            vitals.set_tier(target.tier());
+        }
+    }
+
     /// Draws the picture that can be seen soonest.
     fn picture(&mut self, now_ns: i64) -> Result<Outcome> {
-        let heard = self.sight.clock.at(now_ns);
-        let tick = heard + ticks_from_ns(self.pace.ahead_ns());
+        self.heard = self.sight.clock.at(now_ns);
+        let tick = self.heard + ticks_from_ns(self.pace.ahead_ns());
         self.last_tick = self.last_tick.max(tick);
         if !self.sight.frames.sample(self.last_tick, &mut self.frame) {
             return Ok(Outcome::Retry); // the simulation has not begun

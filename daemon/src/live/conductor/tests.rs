@@ -1,7 +1,5 @@
 //! The sound thread driven by hand, on a steady clock and made-up time.
 
-use std::sync::Arc;
-
 use mouthpiece_phonemes::Phone;
 use mouthpiece_protocol::DaemonMessage;
 use mouthpiece_rig::{Control, Controls};
@@ -37,7 +35,15 @@ fn stage() -> Stage {
     .unwrap();
     let now_ns = origin.now_ns();
     Stage {
-        conductor: Conductor::new(output, inbox, cue, None, speech, LOOK_AHEAD),
+        conductor: Conductor::new(
+            output,
+            inbox,
+            cue,
+            None,
+            speech,
+            LOOK_AHEAD,
+            Arc::new(Vitals::new(origin)),
+        ),
         commands,
         cues,
         answers: mpsc::channel(ANSWERS_MAX),

@@ -1,7 +1,5 @@
 //! The simulation thread driven by hand: a body whose one vertex shows what it was told.
 
-use std::sync::Arc;
-
 use glam::Vec3;
 use mouthpiece_phonemes::{Phone, Segment};
 use mouthpiece_rig::Control;
@@ -10,7 +8,7 @@ use mouthpiece_speech::{Idle, Speech};
 use super::*;
 use crate::live::clock::{ClockCell, Stamp};
 use crate::live::frames::{FrameReader, key_frames};
-use crate::live::time::ticks_from_ns;
+use crate::live::time::{Origin, ticks_from_ns};
 
 /// Follows the jaw it is told with some inertia; its state is that one number.
 struct Lump {
@@ -71,7 +69,14 @@ fn stage() -> Stage {
     let score = Score::new(&speech, Idle::new(7));
     let clock = AudibleClock::new(Arc::clone(&cell));
     Stage {
-        face: Face::new(lump, score, clock, inbox, writer),
+        face: Face::new(
+            lump,
+            score,
+            clock,
+            inbox,
+            writer,
+            Arc::new(Vitals::new(Origin::new())),
+        ),
         cell,
         cues,
         reader,

@@ -86,6 +86,8 @@ pub struct Output {
     polled_ns: i64,
     retry_ns: i64,
     backoff_ns: i64,
+    /// Of the devices before this one.
+    underruns: u64,
 }
 
 impl Output {
@@ -105,6 +107,7 @@ impl Output {
             polled_ns: now_ns,
             retry_ns: now_ns,
             backoff_ns: RETRY_NS,
+            underruns: 0,
         };
         if output.choice == Choice::Silent {
             output.retry_ns = i64::MAX;
@@ -118,6 +121,20 @@ impl Output {
     /// Whether sound can be heard now.
     pub fn has_device(&self) -> bool {
         matches!(self.sink, Sink::Device(_))
+    }
+
+    /// Whether sound is to be heard at all.
+    pub fn wants_device(&self) -> bool {
+        self.choice != Choice::Silent
+    }
+
+    /// How often a device ran dry so far.
+    pub fn underruns(&self) -> i64 {
+        let now = match &self.sink {
+            Sink::Device(playing) => playing.watch.underruns,
+            Sink::Steady { .. } => 0,
+        };
+        i64::try_from(self.underruns + now).unwrap_or(i64::MAX)
     }
 
     /// The tick that is heard at `now_ns`.
@@ -233,6 +250,7 @@ impl Output {
                 device = %playing.device.name, at_s = seconds(base),
                 "the sound device {}; going on without sound, a steady clock keeps time", fault.words()
             );
+            self.underruns += playing.watch.underruns;
             playing.device.link.retired.store(true, Ordering::Release);
             close(*playing);
         }

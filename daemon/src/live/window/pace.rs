@@ -52,7 +52,7 @@ impl Pace {
     }
 
     /// Time between two pictures.
-    fn interval_ns(&self) -> i64 {
+    pub(super) fn interval_ns(&self) -> i64 {
         if self.software {
             let drawn = self.draw_ns + self.draw_ns * REST_TENTHS / 10;
             drawn.max(SOFTWARE_NS).max(self.refresh_ns)
