@@ -135,13 +135,7 @@ fn look(tier: TierArg) -> LookArgs {
 
 /// The most memory that this process has held, where the system tells.
 fn peak_mb() -> Option<f64> {
-    Some(rounded(status_kb("VmHWM:")? / 1024.0))
-}
-
-fn status_kb(entry: &str) -> Option<f64> {
-    let status = std::fs::read_to_string("/proc/self/status").ok()?;
-    let line = status.lines().find(|line| line.starts_with(entry))?;
-    line.split_whitespace().nth(1)?.parse().ok()
+    Some(rounded(crate::memory::status_kb("VmHWM:")? / 1024.0))
 }
 
 /// `a.b.c  value`, a line each.

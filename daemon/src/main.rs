@@ -34,6 +34,7 @@ mod labels;
 mod live;
 mod log;
 mod media;
+mod memory;
 mod pipeline;
 mod still;
 mod voices;

@@ -11,7 +11,8 @@
 //! lamp sees it, and the picture. Each shader ends in the film's curve, so the resolve of the
 //! multisampled picture averages finished colours.
 //!
-//! [`Offscreen`] reads pictures back, two in flight, and a [`Batch`] keeps all cores at it; [`WindowTarget`] shows them. None
+//! [`Offscreen`] reads pictures back, two in flight, and a [`Batch`] keeps all cores at it; [`WindowTarget`] shows them, and
+//! gives one back as a [`Shot`] when asked. None
 //! knows of time: the caller says which key frame is now.
 
 #![forbid(unsafe_code)]
@@ -41,6 +42,7 @@ mod pipelines;
 mod recipes;
 mod renderer;
 mod shader;
+mod shot;
 #[cfg(test)]
 mod steady_tests;
 mod studio;
@@ -64,6 +66,7 @@ pub use offscreen::{FRAMES_IN_FLIGHT, Offscreen};
 pub use picture::{PICTURE_SIDE_MAX, Picture, PictureError};
 pub use renderer::Renderer;
 pub use shader::ShaderError;
+pub use shot::{Shot, SmallPicture};
 pub use tier::{Tier, UnknownTier};
 pub use view::{Background, Camera, Extent, Framing, Shown, UnknownCamera, View};
 pub use window::{Outcome, WindowError, WindowTarget};

@@ -13,6 +13,7 @@ use mouthpiece_rig::{Head, KeyFrame};
 use crate::error::RenderError;
 use crate::gpu::Gpu;
 use crate::renderer::{Renderer, check_size};
+use crate::shot::padded_row;
 use crate::targets::texture;
 use crate::tier::Tier;
 use crate::view::{Extent, View};
@@ -315,9 +316,4 @@ fn straighten(rgba: &mut [u8]) {
             }
         }
     }
-}
-
-/// Bytes of a row in a readback buffer.
-fn padded_row(width: u32) -> u32 {
-    (width * 4).next_multiple_of(wgpu::COPY_BYTES_PER_ROW_ALIGNMENT)
 }

@@ -11,6 +11,7 @@ use wgpu::rwh::{HasDisplayHandle, HasWindowHandle};
 use crate::error::RenderError;
 use crate::gpu::{Gpu, GpuError};
 use crate::renderer::Renderer;
+use crate::shot::{Shot, Take};
 use crate::tier::Tier;
 use crate::view::View;
 
@@ -47,6 +48,8 @@ pub struct WindowTarget {
     /// The renderer of another tier, in the making on a thread of its own.
     coming: Option<(Tier, JoinHandle<Result<Renderer, RenderError>>)>,
     cost_ns: i64,
+    /// Who wants the next picture back.
+    take: Option<Take>,
 }
 
 impl std::fmt::Debug for WindowTarget {
@@ -108,6 +111,7 @@ impl WindowTarget {
             tier,
             coming: None,
             cost_ns: 0,
+            take: None,
         };
         target.resize(size);
         Ok(target)
@@ -150,6 +154,14 @@ impl WindowTarget {
         match spawned {
             Ok(thread) => self.coming = Some((tier, thread)),
             Err(error) => tracing::warn!(%error, "no thread to make another tier ready"),
+        }
+    }
+
+    /// Gives the next picture that is shown to `take` as well, on this thread, a picture or two later: it should only
+    /// pass it on. Dropped where this screen's pictures cannot be had or the device is lost in between.
+    pub fn shoot(&mut self, take: impl FnOnce(Shot) + Send + 'static) {
+        if self.config.usage.contains(wgpu::TextureUsages::COPY_SRC) {
+            self.take = Some(Box::new(take));
         }
     }
 
@@ -222,6 +234,10 @@ impl WindowTarget {
         let submission = self
             .renderer
             .draw(&self.gpu, key_frame, view, &target, size)?;
+        if let Some(take) = self.take.take() {
+            let (device, queue) = (self.gpu.device(), self.gpu.queue());
+            Shot::request(device, queue, &texture.texture, take);
+        }
         self.gpu.queue().present(texture);
         // To know what pictures cost, and so that none queue up. A card that takes longer than this hangs.
         let done = self.gpu.device().poll(wgpu::PollType::Wait {
@@ -253,7 +269,10 @@ fn configuration(
     let mut config = surface
         .get_default_config(gpu.adapter(), 1, 1)
         .ok_or_else(unsupported)?;
-    let formats = surface.get_capabilities(gpu.adapter()).formats;
+    let offered = surface.get_capabilities(gpu.adapter());
+    let formats = offered.formats;
+    // For shots; where it is not offered there are none.
+    config.usage |= offered.usages & wgpu::TextureUsages::COPY_SRC;
     let eight_bit = |f: &wgpu::TextureFormat| {
         use wgpu::TextureFormat as F;
         matches!(

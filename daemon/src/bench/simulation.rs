@@ -94,5 +94,5 @@ fn state_mb(simulation: &Simulation) -> Option<f64> {
 }
 
 fn resident_kb() -> Option<f64> {
-    super::status_kb("VmRSS:")
+    crate::memory::status_kb("VmRSS:")
 }
