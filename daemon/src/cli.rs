@@ -3,9 +3,11 @@
 //! Only words and their meaning; the work is in the module of each command's name. Values that
 //! need reading (sizes, rates, colours) are in [`values`].
 
+mod config;
 mod head;
 mod scene;
 mod skin;
+mod stage;
 mod text;
 mod values;
 
@@ -17,8 +19,11 @@ use mouthpiece_render::{Camera, Tier, View};
 use mouthpiece_rig::{Anatomy, TissueModel};
 use mouthpiece_speech::State;
 
+pub use config::{ConfigArgs, ConfigCommand};
 pub use head::{CalibrateArgs, FitArgs, HeadCommand, InfoArgs, LandmarksArgs};
 pub use scene::{BackgroundArg, SceneArgs};
+pub use skin::SkinArg;
+pub use stage::StageArgs;
 pub use text::TextArgs;
 pub use values::{Fps, Size};
 
@@ -52,6 +57,8 @@ pub enum Command {
     Head(HeadCommand),
     Bench(BenchArgs),
     Doctor(DoctorArgs),
+    #[command(subcommand)]
+    Config(ConfigCommand),
     #[command(hide = true)]
     SyncTest(SyncTestArgs),
 }
@@ -59,7 +66,7 @@ pub enum Command {
 /// The daemon: a window, sound and a socket; the face idles alive until something speaks
 #[derive(Debug, Args)]
 #[command(
-    after_help = "Examples:\n  mouthpiece run\n  mouthpiece run --listen ./face.sock --fullscreen\n  mouthpiece run --listen 127.0.0.1:7716 --audio-device alsa:pulse"
+    after_help = "Examples:\n  mouthpiece run\n  mouthpiece run --config kiosk.toml\n  mouthpiece run --listen ./face.sock --fullscreen\n  mouthpiece run --listen 127.0.0.1:7716 --audio-device alsa:pulse"
 )]
 pub struct RunArgs {
     /// Where to listen: a path for a Unix socket or HOST:PORT on loopback [default:
@@ -85,35 +92,6 @@ pub struct SayArgs {
     pub stage: StageArgs,
 }
 
-/// Window, sound device and look of a live face.
-#[derive(Clone, Debug, Args)]
-pub struct StageArgs {
-    /// Sound device by its name in `mouthpiece doctor`; `none` for a steady clock without sound
-    #[arg(long, value_name = "ID")]
-    pub audio_device: Option<String>,
-    /// Fill the screen
-    #[arg(long)]
-    pub fullscreen: bool,
-    /// Size of the window in pixels
-    #[arg(long, value_name = "WxH", default_value = "720x720")]
-    pub size: Size,
-    /// Quality of the picture
-    #[arg(long, value_enum, default_value_t = LiveTierArg::Auto)]
-    pub tier: LiveTierArg,
-    #[command(flatten)]
-    pub scene: SceneArgs,
-    /// Seed of the blinks and glances of an idle face
-    #[arg(long, value_name = "N", default_value_t = 1)]
-    pub seed: u64,
-    /// Of an utterance that is still coming in so much must be there before it begins: what the mouth knows
-    /// ahead
-    #[arg(long, value_name = "MS", default_value_t = 300,
-          value_parser = clap::value_parser!(u16).range(0..=500))]
-    pub look_ahead: u16,
-    #[command(flatten)]
-    pub cast: CastArgs,
-}
-
 /// Who speaks.
 #[derive(Clone, Debug, Default, Args)]
 pub struct CastArgs {
@@ -126,7 +104,7 @@ pub struct CastArgs {
 }
 
 /// A model of the skin's tissue.
-#[derive(Clone, Copy, Debug, ValueEnum)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
 pub enum TissueArg {
     /// The skin's edges and springs to muscle and bone: the default
     Springs,
@@ -190,7 +168,7 @@ pub struct MoodArgs {
 }
 
 /// What a face does while it says nothing.
-#[derive(Clone, Copy, Debug, Default, ValueEnum)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, ValueEnum)]
 pub enum StateArg {
     /// Nobody is there
     #[default]

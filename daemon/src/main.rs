@@ -3,6 +3,7 @@
 //! | module | does |
 //! |---|---|
 //! | [`cli`] | the words of the command line |
+//! | [`config`] | the configuration file under it, and `mouthpiece config …` |
 //! | [`input`] | labels and sound, from files or the demo |
 //! | [`pipeline`] | labels to key frames, offline: what export, curves and still share |
 //! | [`export`], [`curves`], [`labels`], [`still`], [`bench`](mod@bench), [`doctor`] | the commands of these names |
@@ -23,6 +24,7 @@
 mod avatar;
 mod bench;
 mod cli;
+mod config;
 mod curves;
 mod dictionary;
 mod doctor;
@@ -102,6 +104,7 @@ fn dispatch(command: &Command) -> anyhow::Result<()> {
         Command::Head(command) => head::run(command),
         Command::Bench(args) => bench::run(args),
         Command::Doctor(_) => doctor::run(),
+        Command::Config(command) => config::run(command),
         Command::Run(args) => live::run(args),
         Command::Say(args) => live::say(args),
         Command::SyncTest(args) => live::sync_test(&args.stage, args.seconds),

@@ -1,5 +1,6 @@
 //! What is round the head: backdrop and ambient light, as words and files.
 
+use std::fmt;
 use std::path::PathBuf;
 use std::str::FromStr;
 use std::sync::Arc;
@@ -15,20 +16,21 @@ use super::values::Rgb;
 /// What is round the head.
 #[derive(Clone, Debug, Default, Args)]
 pub struct SceneArgs {
-    /// Behind the head: #rrggbb, gradient:#top,#bottom, a .png or .jpg file, transparent [default: a studio wall]
+    /// Behind the head: #rrggbb, gradient:#top,#bottom, a .png or .jpg file, transparent [default: studio, a wall]
     #[arg(long, value_name = "B")]
     pub background: Option<BackgroundArg>,
     /// Ambient light from a panorama, .hdr or .exr; its middle is what the face looks at [default: a studio]
     #[arg(long, value_name = "F")]
     pub environment: Option<PathBuf>,
-    /// How the skin reflects light
-    #[arg(long, value_enum, default_value_t)]
-    pub skin: SkinArg,
+    /// How the skin reflects light [default: physical]
+    #[arg(long, value_enum)]
+    pub skin: Option<SkinArg>,
 }
 
 /// A backdrop on the command line.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum BackgroundArg {
+    Studio,
     Plain(Rgb),
     Gradient(Rgb, Rgb),
     Picture(PathBuf),
@@ -55,8 +57,10 @@ impl FromStr for BackgroundArg {
             let text = text.trim();
             Rgb::from_str(text).map_err(|why| BackgroundError::Colour(text.into(), why))
         };
-        if text == "transparent" {
-            return Ok(Self::Transparent);
+        match text {
+            "studio" => return Ok(Self::Studio),
+            "transparent" => return Ok(Self::Transparent),
+            _ => {}
         }
         if let Some(both) = text.strip_prefix("gradient:") {
             let (top, bottom) = both.split_once(',').ok_or(BackgroundError::Gradient)?;
@@ -74,21 +78,41 @@ impl FromStr for BackgroundArg {
     }
 }
 
+impl fmt::Display for BackgroundArg {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Studio => f.write_str("studio"),
+            Self::Plain(colour) => write!(f, "{colour}"),
+            Self::Gradient(top, bottom) => write!(f, "gradient:{top},{bottom}"),
+            Self::Picture(path) => write!(f, "{}", path.display()),
+            Self::Transparent => f.write_str("transparent"),
+        }
+    }
+}
+
+impl BackgroundArg {
+    /// As the renderer wants it. Reads the file that is named.
+    pub fn load(&self) -> anyhow::Result<Background> {
+        Ok(match self {
+            Self::Studio => View::default().background,
+            Self::Plain(Rgb(colour)) => Background::Plain(*colour),
+            Self::Gradient(Rgb(top), Rgb(bottom)) => Background::Gradient {
+                top: *top,
+                bottom: *bottom,
+            },
+            Self::Picture(path) => Background::Picture(Arc::new(Picture::load(path)?)),
+            Self::Transparent => Background::Transparent,
+        })
+    }
+}
+
 impl SceneArgs {
     /// The surroundings that are asked for, from the front. Reads the files that are named.
     pub fn view(&self) -> anyhow::Result<View> {
         let view = View::default();
         let background = match &self.background {
             None => view.background,
-            Some(BackgroundArg::Plain(Rgb(colour))) => Background::Plain(*colour),
-            Some(BackgroundArg::Gradient(Rgb(top), Rgb(bottom))) => Background::Gradient {
-                top: *top,
-                bottom: *bottom,
-            },
-            Some(BackgroundArg::Picture(path)) => {
-                Background::Picture(Arc::new(Picture::load(path).context("--background")?))
-            }
-            Some(BackgroundArg::Transparent) => Background::Transparent,
+            Some(background) => background.load().context("--background")?,
         };
         let environment = match &self.environment {
             None => view.environment,
@@ -97,7 +121,7 @@ impl SceneArgs {
         Ok(View {
             background,
             environment,
-            skin: self.skin.into(),
+            skin: self.skin.unwrap_or_default().into(),
             ..view
         })
     }
@@ -123,6 +147,7 @@ mod tests {
             Ok(BackgroundArg::Gradient(a, b))
         );
         assert_eq!(read("transparent"), Ok(BackgroundArg::Transparent));
+        assert_eq!(read("studio"), Ok(BackgroundArg::Studio));
         assert_eq!(
             read("my wall.png"),
             Ok(BackgroundArg::Picture("my wall.png".into()))
@@ -155,9 +180,12 @@ mod tests {
 
     proptest! {
         #[test]
-        fn any_words_are_read_or_refused(text in ".{0,40}") {
-            let _ = text.parse::<BackgroundArg>();
-            let _ = format!("gradient:{text}").parse::<BackgroundArg>();
+        fn any_words_are_read_or_refused_and_what_is_read_is_written_so(text in ".{0,40}") {
+            for text in [text.clone(), format!("gradient:{text}")] {
+                if let Ok(background) = text.parse::<BackgroundArg>() {
+                    prop_assert_eq!(background.to_string().parse(), Ok(background));
+                }
+            }
         }
     }
 }

@@ -172,6 +172,13 @@ impl FromStr for Rgb {
     }
 }
 
+impl fmt::Display for Rgb {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let [r, g, b] = self.0;
+        write!(f, "#{r:02x}{g:02x}{b:02x}")
+    }
+}
+
 /// The label formats that can be read, by name.
 pub fn label_formats() -> PossibleValuesParser {
     let formats = READERS.iter();

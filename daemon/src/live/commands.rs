@@ -3,7 +3,6 @@
 use std::time::Duration;
 
 use anyhow::{Result, bail};
-use mouthpiece_render::Background;
 use tokio::runtime::Runtime;
 use tokio::sync::oneshot;
 
@@ -17,7 +16,8 @@ use super::speaker;
 use super::stop::Stop;
 use super::sync::{self, Flash};
 use super::window::{Display, Look, Wake};
-use crate::cli::{RunArgs, SayArgs, StageArgs, Usage};
+use crate::cli::{CastArgs, RunArgs, SayArgs, StageArgs};
+use crate::config::{self, Config};
 use crate::interrupt::Interrupted;
 use crate::pipeline::Cast;
 
@@ -28,20 +28,16 @@ const CLOSE_PATIENCE: Duration = Duration::from_millis(300);
 pub fn run(args: &RunArgs) -> Result<()> {
     let stop = Stop::default();
     let net = runtime(&stop)?;
-    let address = match &args.listen {
+    let config = config::Source::new(&args.stage, args.listen.as_deref()).load()?;
+    let address = match &config.wire.listen {
         Some(text) => Address::parse(text)?,
         None => Address::user_default()?,
     };
-    let look = look(&args.stage)?;
+    let look = look(&config)?;
     // First, so that a second daemon ends before it has cost anything.
     let server = net.block_on(Server::bind(&address))?;
-    let cast = Cast::load(&args.stage.cast)?;
-    let (player, sight) = Player::start(
-        &cast,
-        choice(&args.stage),
-        args.stage.seed,
-        args.stage.look_ahead,
-    )?;
+    let cast = cast(&config)?;
+    let (player, sight) = start(&cast, &config)?;
     let serving = net.spawn(server.serve(player.handle()));
     let seen = match Display::open() {
         Ok(display) => show(display, &net, &cast, sight, look, &stop, None, None),
@@ -61,7 +57,8 @@ pub fn run(args: &RunArgs) -> Result<()> {
 pub fn say(args: &SayArgs) -> Result<()> {
     let stop = Stop::default();
     let net = runtime(&stop)?;
-    let address = match &args.listen {
+    let config = config::Source::new(&args.stage, args.listen.as_deref()).load()?;
+    let address = match &config.wire.listen {
         Some(text) => Some(Address::parse(text)?),
         None => Address::user_default().ok(),
     };
@@ -80,28 +77,29 @@ pub fn say(args: &SayArgs) -> Result<()> {
             Err(_) => {}
         }
     }
-    perform(Source::open(&args.input)?, &args.stage, None, &net, &stop)
+    perform(Source::open(&args.input)?, &config, None, &net, &stop)
 }
 
 /// Clicks with flashes for `seconds`, for a recorder outside to judge.
 pub fn sync_test(stage: &StageArgs, seconds: u32) -> Result<()> {
     let stop = Stop::default();
     let net = runtime(&stop)?;
+    let config = config::Source::new(stage, None).load()?;
     let (source, flash) = sync::clicks(seconds)?;
-    perform(source, stage, Some(flash), &net, &stop)
+    perform(source, &config, Some(flash), &net, &stop)
 }
 
 /// Speaks `source` in this process.
 fn perform(
     source: Source,
-    stage: &StageArgs,
+    config: &Config,
     flash: Option<Flash>,
     net: &Runtime,
     stop: &Stop,
 ) -> Result<()> {
-    let look = look(stage)?;
-    let cast = Cast::load(&stage.cast)?;
-    let (player, sight) = Player::start(&cast, choice(stage), stage.seed, stage.look_ahead)?;
+    let look = look(config)?;
+    let cast = cast(config)?;
+    let (player, sight) = start(&cast, config)?;
     let display = match Display::open() {
         Ok(display) => Some(display),
         Err(error) if player.has_sound() => {
@@ -175,26 +173,32 @@ fn show(
     display.show(std::sync::Arc::clone(&cast.head), sight, look, flash, shown)
 }
 
-fn look(stage: &StageArgs) -> Result<Look> {
-    let view = stage.scene.view()?;
-    if view.background == Background::Transparent {
-        let why = "--background transparent: a window is not; write out-%05d.png with `mouthpiece export`";
-        return Err(Usage(why.into()).into());
-    }
+/// How the window is to look; reads the files that are named.
+fn look(config: &Config) -> Result<Look> {
+    let size = config.window.size;
     Ok(Look {
-        size: (stage.size.width, stage.size.height),
-        fullscreen: stage.fullscreen,
-        tier: stage.tier.fixed(),
-        view,
+        size: (size.width, size.height),
+        fullscreen: config.window.fullscreen,
+        tier: config.look.tier.fixed(),
+        view: config.look.view()?,
     })
 }
 
-fn choice(stage: &StageArgs) -> Choice {
-    match stage.audio_device.as_deref() {
-        None => Choice::Default,
-        Some("none") => Choice::Silent,
-        Some(id) => Choice::Id(id.to_owned()),
-    }
+fn cast(config: &Config) -> Result<Cast> {
+    Cast::load(&CastArgs {
+        head: config.look.head.clone(),
+        tissue: config.look.tissue,
+    })
+}
+
+fn start(cast: &Cast, config: &Config) -> Result<(Player, Sight)> {
+    let choice = match config.sound.device.as_str() {
+        "default" => Choice::Default,
+        "none" => Choice::Silent,
+        id => Choice::Id(id.to_owned()),
+    };
+    let look_ahead_ms = u16::try_from(config.sound.look_ahead_ms.get())?;
+    Player::start(cast, choice, config.life.seed, look_ahead_ms)
 }
 
 /// Sockets and control, on one thread: nothing real-time runs there.

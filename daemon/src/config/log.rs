@@ -1,0 +1,27 @@
+//! `[log]`: what is said on stderr.
+
+use clap::ValueEnum;
+
+use super::section::section;
+use super::value::as_word;
+
+section! {
+    /// What is said on stderr. -v and RUST_LOG go first.
+    pub struct Log {
+        /// How much: "error", "warn", "info" or "debug".
+        level: Level = Level::Info,
+        /// A JSON object a line instead of text.
+        json: bool = false,
+    }
+}
+
+/// How much is said.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub enum Level {
+    Error,
+    Warn,
+    Info,
+    Debug,
+}
+
+as_word!(Level);

@@ -1,0 +1,89 @@
+//! Flag over file over default.
+
+use std::path::PathBuf;
+
+use anyhow::Result;
+
+use super::value::Whole;
+use super::{Config, file};
+use crate::cli::{BackgroundArg, StageArgs, Usage};
+
+/// Where a live face's configuration comes from; asked again when the file has changed.
+#[derive(Clone, Debug)]
+pub struct Source {
+    file: Option<PathBuf>,
+    flags: StageArgs,
+    listen: Option<String>,
+}
+
+impl Source {
+    /// What the command line says: `listen` is the daemon's own flag.
+    pub fn new(stage: &StageArgs, listen: Option<&str>) -> Self {
+        Self {
+            file: stage.config.clone().or_else(file::user_default),
+            flags: stage.clone(),
+            listen: listen.map(str::to_owned),
+        }
+    }
+
+    /// The file that is read, where there is one.
+    pub fn file(&self) -> Option<&std::path::Path> {
+        self.file.as_deref()
+    }
+
+    /// Reads the file and puts the flags on top.
+    pub fn load(&self) -> Result<Config> {
+        let mut config = match &self.file {
+            Some(path) => file::read(path)?,
+            None => Config::default(),
+        };
+        self.flags.lay_over(&mut config);
+        if let Some(listen) = &self.listen {
+            config.wire.listen = Some(listen.clone());
+        }
+        if config.look.background == BackgroundArg::Transparent {
+            let why = "--background transparent: a window is not; write out-%05d.png with `mouthpiece export`";
+            return Err(Usage(why.into()).into());
+        }
+        Ok(config)
+    }
+}
+
+/// What a flag says goes first.
+fn set<T: Clone>(value: &mut T, flag: Option<&T>) {
+    if let Some(flag) = flag {
+        value.clone_from(flag);
+    }
+}
+
+impl StageArgs {
+    fn lay_over(&self, config: &mut Config) {
+        let Config {
+            window,
+            look,
+            sound,
+            life,
+            ..
+        } = config;
+        window.fullscreen |= self.fullscreen;
+        set(&mut window.monitor, self.monitor.as_ref());
+        set(&mut window.size, self.size.as_ref());
+        set(&mut look.tier, self.tier.as_ref());
+        set(&mut look.background, self.scene.background.as_ref());
+        set(&mut look.skin, self.scene.skin.as_ref());
+        if self.scene.environment.is_some() {
+            look.environment.clone_from(&self.scene.environment);
+        }
+        if self.cast.head.is_some() {
+            look.head.clone_from(&self.cast.head);
+        }
+        if self.cast.tissue.is_some() {
+            look.tissue = self.cast.tissue;
+        }
+        set(&mut sound.device, self.audio_device.as_ref());
+        if let Some(ms) = self.look_ahead {
+            sound.look_ahead_ms = Whole::new(i64::from(ms));
+        }
+        set(&mut life.seed, self.seed.as_ref());
+    }
+}
