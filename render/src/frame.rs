@@ -41,7 +41,9 @@ pub(crate) fn data(
         Shown::Face | Shown::Yardstick => open,
         Shown::Anatomy => &BARE,
     };
-    let framing = extent.frame(view.camera, size);
+    let upright = view.placing.upright(size);
+    let mut framing = extent.frame(view.camera, upright);
+    view.placing.place(&mut framing, upright);
     let studio = Studio::portrait(view.camera.yaw_rad(), &view.environment);
     let mut bodies = pose.bodies(&key_frame.state);
     gaze::converge(pose, &mut bodies);
@@ -61,6 +63,7 @@ pub(crate) fn data(
         Background::Picture(_) | Background::Transparent => (Vec3::ZERO, Vec3::ZERO, 0.0),
     };
     let cover = f32::from(u8::from(view.background != Background::Transparent));
+    let ((cos, sin), wander) = (view.placing.turn(), view.placing.wander_px);
     let (width, height) = (size.0 as f32, size.1 as f32);
     Frame {
         clip_from_world: framing.clip_from_world.to_cols_array_2d(),
@@ -84,7 +87,7 @@ pub(crate) fn data(
         lids: open.lids.map(|lid| lid.to_array()),
         lids_at_rest: open.lids_at_rest.map(|lid| lid.to_array()),
         backdrop: [
-            middle.extend(width / height).to_array(),
+            middle.extend(upright.0 as f32 / upright.1 as f32).to_array(),
             corner.extend(down).to_array(),
         ],
         picture: [width, height, FLASH_SHARE, cover],
@@ -94,6 +97,8 @@ pub(crate) fn data(
             .extend(0.0)
             .to_array(),
         pupil: [pupil, 0.0, 0.0, 0.0],
+        placing: [cos, sin, wander.x, wander.y],
+        reach: [view.placing.wander_max_px, 0.0, 0.0, 0.0],
     }
 }
 

@@ -31,6 +31,8 @@ pub(crate) struct Frame {
     pub(crate) wrinkled: [[f32; 4]; 4],
     pub(crate) toward_camera: [f32; 4],
     pub(crate) pupil: [f32; 4],
+    pub(crate) placing: [f32; 4],
+    pub(crate) reach: [f32; 4],
 }
 
 /// The part of a skin vertex that moves: head's frame, mm.

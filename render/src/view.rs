@@ -14,6 +14,7 @@ use thiserror::Error;
 use crate::environment::Environment;
 use crate::model::SkinModel;
 use crate::picture::Picture;
+use crate::placing::Placing;
 
 /// Where the camera stands.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
@@ -116,6 +117,8 @@ pub struct View {
     pub shown: Shown,
     /// How its skin reflects light.
     pub skin: SkinModel,
+    /// How the picture sits on the screen.
+    pub placing: Placing,
     /// Draws a large white square in the upper left corner: what a test of sound against picture
     /// looks for in its recording of the screen.
     pub flash: bool,
@@ -129,6 +132,7 @@ impl Default for View {
             environment: Environment::default(),
             shown: Shown::Face,
             skin: SkinModel::default(),
+            placing: Placing::default(),
             flash: false,
         }
     }

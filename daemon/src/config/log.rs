@@ -11,7 +11,7 @@ section! {
         /// How much: "error", "warn", "info" or "debug".
         level: Level = Level::Info,
         /// A JSON object a line instead of text.
-        json: bool = false,
+        json: bool = false => at_start,
     }
 }
 

@@ -15,9 +15,9 @@ section! {
     /// Who is seen, and how. Files are looked for from the folder of this file on.
     pub struct Look {
         /// A head file (.glb). Not set: the built-in head.
-        head: Option<PathBuf> = None,
+        head: Option<PathBuf> = None => at_start,
         /// What moves the skin: "springs" or "layered". Not set: what the head says.
-        tissue: Option<TissueArg> = None,
+        tissue: Option<TissueArg> = None => at_start,
         /// Quality of the picture: "auto" is the best that this machine draws in time; or "low", "medium", "high".
         tier: LiveTierArg = LiveTierArg::Auto,
         /// Behind the head: "studio", a colour ("#203040"), "gradient:#top,#bottom", or a .png or .jpg file.

@@ -23,6 +23,9 @@ pub fn toml(config: &Config) -> anyhow::Result<String> {
             for line in key.about {
                 writeln!(text, "#{line}")?;
             }
+            if key.at_start {
+                writeln!(text, "# (A change is felt at the next start.)")?;
+            }
             match section.and_then(|s| s.get(key.name)) {
                 Some(value) => writeln!(text, "{} = {value}", key.name)?,
                 None => writeln!(text, "#{} =", key.name)?,

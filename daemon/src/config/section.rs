@@ -8,6 +8,8 @@
 pub struct Key {
     pub name: &'static str,
     pub about: &'static [&'static str],
+    /// A change is not felt by a face that lives already.
+    pub at_start: bool,
 }
 
 /// A part of the file under a `[heading]`.
@@ -16,8 +18,14 @@ pub trait Section {
     const KEYS: &'static [Key];
 }
 
-/// Declares a section: `/// what it means` and `key: Type = default,` for each key. A key of type
-/// `Option` is not set by default.
+/// Whether a key's declaration says so.
+pub const fn is_at_start(words: &[&str]) -> bool {
+    !words.is_empty()
+}
+
+/// Declares a section: `/// what it means` and `key: Type = default,` for each key, or `key: Type =
+/// default => at_start,` where a change is felt at the next start only. A key of type `Option` is
+/// not set by default.
 macro_rules! section {
     (
         $(#[doc = $about:literal])+
@@ -25,7 +33,7 @@ macro_rules! section {
             $(
                 $(#[doc = $doc:literal])+
                 $(#[serde($($attribute:tt)*)])?
-                $key:ident : $type:ty = $default:expr,
+                $key:ident : $type:ty = $default:expr $(=> $at_start:ident)?,
             )+
         }
     ) => {
@@ -52,6 +60,7 @@ macro_rules! section {
                 $($crate::config::section::Key {
                     name: stringify!($key),
                     about: &[$($doc),+],
+                    at_start: $crate::config::section::is_at_start(&[$(stringify!($at_start))?]),
                 },)+
             ];
         }

@@ -46,6 +46,7 @@ fn every_key_is_printed_below_what_it_means() {
             let of_key = |l: &&str| l.trim_start_matches('#').starts_with(&format!("{} =", key.name));
             let at = from + lines[from..].iter().position(of_key).unwrap();
             let about = lines[at - 1].strip_prefix("# ").unwrap();
+            let about = if key.at_start { lines[at - 2] } else { about };
             assert!(about.len() > 10, "{section}.{}: {about}", key.name);
         }
     }

@@ -8,12 +8,12 @@ section! {
     /// Where the face is shown.
     pub struct Window {
         /// Fill the screen.
-        fullscreen: bool = false,
+        fullscreen: bool = false => at_start,
         /// The screen to fill: "primary", its name as `mouthpiece doctor` lists it ("HDMI-1"), or
         /// its number from 1.
-        monitor: String = "primary".into(),
+        monitor: String = "primary".into() => at_start,
         /// Size of a window that does not fill the screen, pixels.
-        size: Size = Size { width: 720, height: 720 },
+        size: Size = Size { width: 720, height: 720 } => at_start,
         /// Turns the picture clockwise for a screen that hangs on its side: 0, 90, 180 or 270 degrees.
         rotate: Rotation = Rotation::None,
         /// On a full screen the mouse pointer goes away when it has not moved for so many seconds; 0: it stays.

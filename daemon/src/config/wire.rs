@@ -7,6 +7,6 @@ section! {
     pub struct Wire {
         /// Where to listen: unix:PATH or HOST:PORT on loopback. Not set: mouthpiece.sock in
         /// $XDG_RUNTIME_DIR.
-        listen: Option<String> = None,
+        listen: Option<String> = None => at_start,
     }
 }

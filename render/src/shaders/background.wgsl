@@ -23,7 +23,7 @@ fn backdrop_vertex(@builtin(vertex_index) index: u32) -> WallFragment {
     let p = (at - vec2(0.5, 0.45)) * vec2(min(frame.backdrop[0].w, 1.6), 1.0);
     let share = select(smoothstep(0.05, 0.95, length(p)), at.y, frame.backdrop[1].w > 0.5);
     var out: WallFragment;
-    out.clip = vec4(at * vec2(2.0, -2.0) + vec2(-1.0, 1.0), 1.0, 1.0);
+    out.clip = vec4(turned(at * vec2(2.0, -2.0) + vec2(-1.0, 1.0)), 1.0, 1.0);
     out.colour = mix(frame.backdrop[0].rgb, frame.backdrop[1].rgb, share);
     return out;
 }

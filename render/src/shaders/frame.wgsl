@@ -36,7 +36,7 @@ struct Frame {
     // Backdrop in the middle and in the corners, or above and below, sRGB; w of the first: width over height;
     // w of the second: 1 where it runs from above to below.
     backdrop: array<vec4<f32>, 2>,
-    // Size of the picture in pixels, share of its height that the flash square takes, how much the backdrop
+    // Size of the screen in pixels, share of its height that the flash square takes, how much the backdrop
     // covers: 1, or 0 where there is none.
     picture: vec4<f32>,
     // How far the zones of wrinkles are wrinkled (see maps/zones.rs): first layer left, right, second left, right.
@@ -45,9 +45,19 @@ struct Frame {
     toward_camera: vec4<f32>,
     // x: radius of the pupils in iris radii.
     pupil: vec4<f32>,
+    // Cosine and sine of the picture's turn on the screen, clockwise; how far it is moved, pixels to the right and down.
+    placing: vec4<f32>,
+    // x: how far it is ever moved, pixels.
+    reach: vec4<f32>,
 }
 
 @group(0) @binding(0) var<uniform> frame: Frame;
+
+// A place of the upright picture on the screen, both -1..1 with y up.
+fn turned(p: vec2<f32>) -> vec2<f32> {
+    let turn = frame.placing.xy;
+    return vec2(p.x * turn.x + p.y * turn.y, p.y * turn.x - p.x * turn.y);
+}
 
 // True where the target encodes sRGB by itself: then what is given to it must be decoded first.
 override DECODE_SRGB: bool = false;

@@ -16,9 +16,14 @@ fn picture_vertex(@builtin(vertex_index) index: u32) -> @builtin(position) vec4<
 @fragment
 fn picture(@builtin(position) clip: vec4<f32>) -> @location(0) vec4<f32> {
     let size = vec2<f32>(textureDimensions(picture_map));
-    // Pixels of the frame that a texel becomes.
-    let scale = max(frame.picture.x / size.x, frame.picture.y / size.y);
-    let at = (clip.xy - frame.picture.xy * 0.5) / (size * scale) + 0.5;
+    // From the middle of the upright picture, pixels to the right and down.
+    let turn = frame.placing.xy;
+    let p = clip.xy - frame.picture.xy * 0.5;
+    let from_middle = vec2(p.x * turn.x + p.y * turn.y, p.y * turn.x - p.x * turn.y) - frame.placing.zw;
+    // What it must fill, and how many of those pixels a texel becomes.
+    let whole = select(frame.picture.xy, frame.picture.yx, turn.y != 0.0) + 2.0 * frame.reach.x;
+    let scale = max(whole.x / size.x, whole.y / size.y);
+    let at = from_middle / (size * scale) + 0.5;
     let texel = textureSample(picture_map, picture_sampler, at);
     return vec4(shown(texel.rgb).rgb, texel.a);
 }
