@@ -87,7 +87,9 @@ pub(crate) fn data(
         lids: open.lids.map(|lid| lid.to_array()),
         lids_at_rest: open.lids_at_rest.map(|lid| lid.to_array()),
         backdrop: [
-            middle.extend(upright.0 as f32 / upright.1 as f32).to_array(),
+            middle
+                .extend(upright.0 as f32 / upright.1 as f32)
+                .to_array(),
             corner.extend(down).to_array(),
         ],
         picture: [width, height, FLASH_SHARE, cover],

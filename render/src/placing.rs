@@ -65,7 +65,12 @@ impl Placing {
             Vec4::Z,
             Vec4::new(moved.x, moved.y, 0.0, 1.0),
         );
-        let turned = Mat4::from_cols(Vec4::new(c, -s, 0.0, 0.0), Vec4::new(s, c, 0.0, 0.0), Vec4::Z, Vec4::W);
+        let turned = Mat4::from_cols(
+            Vec4::new(c, -s, 0.0, 0.0),
+            Vec4::new(s, c, 0.0, 0.0),
+            Vec4::Z,
+            Vec4::W,
+        );
         framing.clip_from_world = turned * zoomed * framing.clip_from_world;
     }
 }
@@ -93,7 +98,10 @@ mod tests {
         let point = vec3(40.0, 100.0, 50.0);
         let upright = shown(&Placing::default(), (300, 400), point);
         let turned = |quarters, size| {
-            let placing = Placing { quarters, ..Placing::default() };
+            let placing = Placing {
+                quarters,
+                ..Placing::default()
+            };
             shown(&placing, size, point)
         };
         let near = |a: Vec2, b: Vec2| assert!(a.distance(b) < 0.01, "{a} {b}");
@@ -110,8 +118,8 @@ mod tests {
             ..Placing::default()
         };
         for point in [vec3(0.0, 0.0, 90.0), vec3(30.0, 60.0, -80.0)] {
-            let moved = shown(&placing, (400, 300), point)
-                - shown(&Placing::default(), (400, 300), point);
+            let moved =
+                shown(&placing, (400, 300), point) - shown(&Placing::default(), (400, 300), point);
             assert!(moved.distance(vec2(43.0, -62.0)) < 0.01, "{moved}");
         }
     }

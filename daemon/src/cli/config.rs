@@ -8,10 +8,14 @@ use clap::{Args, Subcommand};
 #[derive(Debug, Subcommand)]
 pub enum ConfigCommand {
     /// Say whether the file is right, and if not where and what to write instead
-    #[command(after_help = "Examples:\n  mouthpiece config check\n  mouthpiece config check kiosk.toml")]
+    #[command(
+        after_help = "Examples:\n  mouthpiece config check\n  mouthpiece config check kiosk.toml"
+    )]
     Check(ConfigArgs),
     /// Print all keys as TOML with what they mean: as the file has them, and else their defaults
-    #[command(after_help = "Examples:\n  mouthpiece config print > kiosk.toml\n  mouthpiece config print kiosk.toml")]
+    #[command(
+        after_help = "Examples:\n  mouthpiece config print > kiosk.toml\n  mouthpiece config print kiosk.toml"
+    )]
     Print(ConfigArgs),
 }
 

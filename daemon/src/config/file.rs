@@ -126,7 +126,11 @@ fn mend(message: &str, key: &str) -> String {
     let Some((wrong, known)) = quoted.split_first() else {
         return message;
     };
-    let what = if key.starts_with('[') { "section" } else { "key" };
+    let what = if key.starts_with('[') {
+        "section"
+    } else {
+        "key"
+    };
     let near = known
         .iter()
         .map(|name| (strsim::damerau_levenshtein(wrong, name), name))

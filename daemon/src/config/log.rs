@@ -3,7 +3,6 @@
 use clap::ValueEnum;
 
 use super::section::section;
-use super::value::as_word;
 
 section! {
     /// What is said on stderr. -v and RUST_LOG go first.
@@ -23,5 +22,3 @@ pub enum Level {
     Info,
     Debug,
 }
-
-as_word!(Level);

@@ -3,7 +3,8 @@
 use std::path::PathBuf;
 
 use anyhow::Context as _;
-use mouthpiece_render::{Environment, View};
+use glam::vec2;
+use mouthpiece_render::{Environment, Placing, View};
 use serde::de::Error as _;
 use serde::{Deserialize as _, Deserializer};
 
@@ -48,6 +49,11 @@ impl Look {
             background: self.background.load().context("look.background")?,
             environment,
             skin: self.skin.into(),
+            placing: Placing {
+                zoom: self.framing_percent.percent(),
+                shift: vec2(self.across_percent.percent(), self.up_percent.percent()),
+                ..Placing::default()
+            },
             ..view
         })
     }

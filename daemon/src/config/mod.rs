@@ -34,11 +34,10 @@ use serde::{Deserialize, Serialize};
 pub use command::run;
 pub use health::Health;
 pub use life::Life;
-pub use log::{Level, Log};
+pub use log::Log;
 pub use look::Look;
 pub use sound::Sound;
 pub use source::Source;
-pub use value::{Rotation, Whole};
 pub use window::Window;
 pub use wire::Wire;
 

@@ -43,7 +43,10 @@ fn every_key_is_printed_below_what_it_means() {
         let from = lines.iter().position(|l| *l == heading).unwrap();
         assert!(lines[from - 1].starts_with("# "), "{section}");
         for key in keys {
-            let of_key = |l: &&str| l.trim_start_matches('#').starts_with(&format!("{} =", key.name));
+            let of_key = |l: &&str| {
+                l.trim_start_matches('#')
+                    .starts_with(&format!("{} =", key.name))
+            };
             let at = from + lines[from..].iter().position(of_key).unwrap();
             let about = lines[at - 1].strip_prefix("# ").unwrap();
             let about = if key.at_start { lines[at - 2] } else { about };
@@ -53,7 +56,10 @@ fn every_key_is_printed_below_what_it_means() {
     // No key is in the file that is not in the list.
     let all = toml::Table::try_from(Config::default()).unwrap();
     for (name, section) in &all {
-        let (_, _, keys) = Config::sections().into_iter().find(|s| s.0 == name).unwrap();
+        let (_, _, keys) = Config::sections()
+            .into_iter()
+            .find(|s| s.0 == name)
+            .unwrap();
         for key in section.as_table().unwrap().keys() {
             assert!(keys.iter().any(|k| k.name == key), "{name}.{key}");
         }
@@ -87,9 +93,15 @@ fn a_wrong_file_is_refused_with_line_key_and_mend() {
             "[look]\nbackground = \"transparent\"",
             "kiosk.toml, line 2: look.background: a window is not transparent",
         ),
-        ("[windows]\n", "kiosk.toml, line 1: [windows]: there is no such section, did you mean window?"),
+        (
+            "[windows]\n",
+            "kiosk.toml, line 1: [windows]: there is no such section, did you mean window?",
+        ),
         ("[look]\ntier = low\n", "kiosk.toml, line 2: look.tier: "),
-        ("seed = 3\n", "kiosk.toml, line 1: seed: there is no such key"),
+        (
+            "seed = 3\n",
+            "kiosk.toml, line 1: seed: there is no such key",
+        ),
         ("\u{1}\n", "kiosk.toml, line 1: "),
     ] {
         let said = sentence(text);

@@ -8,6 +8,7 @@ use clap::ValueEnum;
 use serde::de::Error as _;
 use serde::{Deserialize, Deserializer, Serialize, Serializer};
 
+use super::log::Level;
 use crate::cli::{BackgroundArg, LiveTierArg, Size, SkinArg, StateArg, TissueArg};
 
 /// A whole number from `MIN` to `MAX`.
@@ -29,11 +30,6 @@ impl<const MIN: i64, const MAX: i64> Whole<MIN, MAX> {
 
     pub const fn get(self) -> i64 {
         self.0
-    }
-
-    /// The same for counts and sizes; 0 where it is below.
-    pub fn count(self) -> usize {
-        usize::try_from(self.0).unwrap_or(0)
     }
 
     /// The same as a share, where the number counts hundredths.
@@ -154,7 +150,6 @@ macro_rules! as_word {
         }
     )+};
 }
-pub(crate) use as_word;
 
 as_text!(Size, BackgroundArg);
-as_word!(LiveTierArg, SkinArg, StateArg, TissueArg);
+as_word!(Level, LiveTierArg, SkinArg, StateArg, TissueArg);

@@ -28,7 +28,11 @@ const CLOSE_PATIENCE: Duration = Duration::from_millis(300);
 pub fn run(args: &RunArgs) -> Result<()> {
     let stop = Stop::default();
     let net = runtime(&stop)?;
-    let config = config::Source::new(&args.stage, args.listen.as_deref()).load()?;
+    let source = config::Source::new(&args.stage, args.listen.as_deref());
+    let config = source.load()?;
+    if let Some(file) = source.file() {
+        tracing::info!(file = %file.display(), "configured");
+    }
     let address = match &config.wire.listen {
         Some(text) => Address::parse(text)?,
         None => Address::user_default()?,
@@ -176,11 +180,13 @@ fn show(
 /// How the window is to look; reads the files that are named.
 fn look(config: &Config) -> Result<Look> {
     let size = config.window.size;
+    let mut view = config.look.view()?;
+    view.placing.quarters = config.window.rotate.quarters();
     Ok(Look {
         size: (size.width, size.height),
         fullscreen: config.window.fullscreen,
         tier: config.look.tier.fixed(),
-        view: config.look.view()?,
+        view,
     })
 }
 
