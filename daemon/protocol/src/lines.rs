@@ -30,6 +30,11 @@ impl Lines {
         }
     }
 
+    /// From the next line on lines may be this long.
+    pub(crate) fn set_max(&mut self, bytes_max: usize) {
+        self.bytes_max = bytes_max;
+    }
+
     /// Takes bytes from the front of `input` up to the next line's end; `None` when all are taken.
     pub(crate) fn next(&mut self, input: &mut &[u8]) -> Option<Line> {
         if std::mem::take(&mut self.taken) {

@@ -1,14 +1,32 @@
-//! Every message of the wire. One JSON object a line; `type` says which; a field that is not listed
-//! here is an error, so that a misspelt one is noticed.
+//! Every message that a client sends. One JSON object a line; `type` says which; a field that is not
+//! listed here is an error, so that a misspelt one is noticed.
 
+use std::collections::BTreeMap;
+
+use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use crate::SampleFormat;
 
 /// What a client sends.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(tag = "type", rename_all = "snake_case", deny_unknown_fields)]
 pub enum ClientMessage {
+    /// Who calls and which version of this protocol it speaks; answered with `hello`. May be left out.
+    Hello {
+        /// The client's version; without one any will do.
+        #[serde(default, skip_serializing_if = "Option::is_none")]
+        version: Option<u32>,
+        /// The client's name, for the daemon's log, 64 characters at most.
+        #[serde(default, skip_serializing_if = "Option::is_none")]
+        client: Option<String>,
+    },
+    /// The daemon's token, where it wants one: before anything but `hello`. Answered with `hello`; a
+    /// wrong one ends the connection.
+    Auth {
+        /// As it stands in the daemon's token file.
+        token: String,
+    },
     /// Opens an utterance; `phones`, `audio` and `end` that follow belong to it.
     Begin(Begin),
     /// Labels of the open utterance, in order of time.
@@ -30,6 +48,17 @@ pub enum ClientMessage {
         #[serde(default, skip_serializing_if = "Option::is_none")]
         id: Option<String>,
     },
+    /// What the face shows, over speech or without, until the next `express`.
+    Express(Express),
+    /// Where the eyes look, until the next `look`.
+    Look(Look),
+    /// What the face does while it says nothing, until it has spoken again.
+    State {
+        /// What.
+        state: FaceState,
+    },
+    /// A text for the screen.
+    Caption(Caption),
     /// Asks for a `pong`.
     Ping {
         /// Sent back as it is, 64 characters at most.
@@ -39,7 +68,7 @@ pub enum ClientMessage {
 }
 
 /// Opens an utterance.
-#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Begin {
     /// The client's name for it, unique among this connection's utterances that have not ended.
@@ -47,7 +76,8 @@ pub struct Begin {
     /// Its sound: none is a silent utterance, as long as its labels.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub audio: Option<Audio>,
-    /// What phones are written in: `timit`, the default, is the only one so far.
+    /// What phones are written in: `timit`, the default, `arpabet`, `radio`, `ipa`, `x-sampa`, `espeak`.
+    /// A symbol that is not known there becomes the nearest phone, with a `warning`.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub alphabet: Option<String>,
     /// Label times are whole samples at this rate; without it they are seconds.
@@ -56,7 +86,7 @@ pub struct Begin {
 }
 
 /// Where an utterance's sound comes from: `file`, or `rate`, `channels` and `format` of what is sent.
-#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Audio {
     /// A WAV file on the daemon's machine, by its absolute path.
@@ -76,7 +106,7 @@ pub struct Audio {
 /// One label. Times count from the first sample of the utterance's sound: seconds, or with
 /// `label_rate` whole samples. They become ticks of 48 kHz, the nearest, before anything is done with
 /// them.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Label {
     /// When it begins.
@@ -90,109 +120,61 @@ pub struct Label {
     pub stress: Option<u8>,
 }
 
-/// What the daemon sends.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-#[serde(tag = "type", rename_all = "snake_case")]
-pub enum DaemonMessage {
-    /// The utterance is queued; exactly one `finished`, `stopped` or `error` with its id ends it.
-    Accepted {
-        /// Which.
-        id: String,
-    },
-    /// Its first sample can be heard now.
-    Started {
-        /// Which.
-        id: String,
-    },
-    /// Where the listener is, about ten times a second.
-    Progress {
-        /// Which.
-        id: String,
-        /// Seconds from the start of its sound.
-        position_s: f64,
-    },
-    /// It has been heard to its end.
-    Finished {
-        /// Which.
-        id: String,
-        /// Seconds from the start of its sound.
-        position_s: f64,
-        /// Sound and labels that came too late and were dropped, seconds.
-        #[serde(default, skip_serializing_if = "is_zero")]
-        dropped_s: f64,
-    },
-    /// It was stopped, by `stop` or before it began.
-    Stopped {
-        /// Which.
-        id: String,
-        /// Seconds of its sound that were heard.
-        position_s: f64,
-    },
-    /// Something could not be done. With `fatal` the named utterance has ended; else it goes on
-    /// without the message that failed.
-    Error {
-        /// Which utterance, where it is about one.
-        #[serde(default, skip_serializing_if = "Option::is_none")]
-        id: Option<String>,
-        /// What kind.
-        code: ErrorCode,
-        /// One sentence, with the mend.
-        message: String,
-        /// Whether it ends the utterance.
-        #[serde(default, skip_serializing_if = "std::ops::Not::not")]
-        fatal: bool,
-    },
-    /// The answer to `ping`.
-    Pong {
-        /// As it came.
-        #[serde(default, skip_serializing_if = "Option::is_none")]
-        token: Option<String>,
-        /// The protocol's version.
-        version: u32,
-    },
+/// A face: an expression by name or muscles by name; with neither, none of them any more. Where it
+/// and speech want different things of the lips, speech wins: they still close in /p b m/.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct Express {
+    /// A name of the library: `happiness`, `smile`, `wink_left`; an unknown one is answered with all.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub expression: Option<String>,
+    /// Values of muscles and other controls, by the names of `mouthpiece curves`; a muscle's with `_l`
+    /// or `_r` behind it is the subject's left or right one alone.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub muscles: Option<BTreeMap<String, f32>>,
+    /// How much of it, 0 to 1; all unless told.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub weight: Option<f32>,
+    /// How long the face takes there, seconds; 0.3 unless told.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub fade_s: Option<f32>,
 }
 
-/// What kind of error.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+/// A point to look at; without one the eyes follow their own life again.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct Look {
+    /// Millimetres from the middle between the eyes: to the face's own left, up, and towards the
+    /// viewer, which must be at least 1. `[0, 0, 1000]` is a viewer a metre away.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub at: Option<[f32; 3]>,
+    /// How long the head takes to follow the eyes, seconds; 0.5 unless told.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub fade_s: Option<f32>,
+}
+
+/// What a face does while it says nothing.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
-pub enum ErrorCode {
-    /// The line is neither a known message nor a TIMIT label.
-    Malformed,
-    /// The message is not legal now.
-    State,
-    /// A bound was exceeded; see [`limits`](crate::limits).
-    Limit,
-    /// A label is wrong: unknown phone, ends before it starts, overlaps the one before.
-    Label,
-    /// The sound is wrong: format, encoding, or the file.
-    Audio,
-    /// The daemon cannot do it now.
-    Busy,
+pub enum FaceState {
+    /// Nobody is there.
+    Idle,
+    /// Somebody speaks to it.
+    Listening,
+    /// It looks for words.
+    Thinking,
 }
 
-impl DaemonMessage {
-    /// The message as the line that is sent, newline included.
-    #[must_use]
-    pub fn line(&self) -> String {
-        // Strings and finite numbers always have a JSON form; positions are finite by construction.
-        let mut line = serde_json::to_string(self).unwrap_or_else(|_| {
-            r#"{"type":"error","code":"busy","message":"this answer has no JSON form"}"#.to_owned()
-        });
-        line.push('\n');
-        line
-    }
-
-    /// The utterance that this message ends, if it ends one.
-    #[must_use]
-    pub fn ends(&self) -> Option<&str> {
-        match self {
-            Self::Finished { id, .. } | Self::Stopped { id, .. } => Some(id),
-            Self::Error {
-                id, fatal: true, ..
-            } => id.as_deref(),
-            _ => None,
-        }
-    }
+/// A text for the screen. While an utterance is open it belongs to it: it is shown from `start` of its
+/// sound until the utterance's next caption or its end. Else it is shown at once, until the next.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct Caption {
+    /// The text, 500 characters at most; an empty one clears the screen.
+    pub text: String,
+    /// When it is shown, seconds from the start of the open utterance's sound; 0 unless told.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub start: Option<f64>,
 }
 
 impl ClientMessage {
@@ -205,12 +187,4 @@ impl ClientMessage {
         line.push('\n');
         Ok(line)
     }
-}
-
-#[allow(
-    clippy::trivially_copy_pass_by_ref,
-    reason = "serde's skip_serializing_if passes a reference"
-)]
-fn is_zero(seconds: &f64) -> bool {
-    *seconds == 0.0
 }

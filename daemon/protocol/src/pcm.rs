@@ -1,9 +1,10 @@
 //! Sound as it is sent (interleaved, little-endian) to mono samples, in pieces that are cut anywhere.
 
+use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 /// What a sample is.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
 pub enum SampleFormat {
     /// 16-bit signed integers.

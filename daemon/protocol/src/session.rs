@@ -7,19 +7,22 @@
 //! | `end` | error `state` | closes it |
 //! | TIMIT line | opens one | taken by a TIMIT stream's, else error `state` |
 //! | empty line | ignored | closes a TIMIT stream's |
-//! | `stop`, `ping` | done | done |
+//! | `caption` | shown at once | shown with it; ignored once it was stopped |
+//! | `stop`, `express`, `look`, `state`, `hello`, `ping` | done | done |
 //! | end of stream | | closes it |
 //!
-//! A message that is refused changes nothing. Utterances that are closed stay *pending* until the
+//! Where a token is wanted, everything but `hello` is error `auth` until `auth` brought it, and a wrong one
+//! ends the connection. A message that is refused changes nothing. Utterances that are closed stay *pending* until the
 //! daemon says that they ended; their ids and their number are kept here.
 
+mod face;
 mod open;
 
-use mouthpiece_phonemes::Segment;
+use mouthpiece_phonemes::{Alphabet, Segment};
 
 use crate::lines::{Line, Lines};
-use crate::message::{Begin, ClientMessage, DaemonMessage, ErrorCode};
-use crate::{Limits, Pcm, VERSION, limits, raw};
+use crate::message::{Begin, Caption, ClientMessage, Express, FaceState, Look};
+use crate::{DaemonMessage, ErrorCode, Limits, Pcm, Token, VERSION, limits, raw};
 use open::Open;
 
 /// Where an utterance's sound comes from.
@@ -69,6 +72,23 @@ pub enum Action {
         /// Which.
         id: Option<String>,
     },
+    /// Show a face; its numbers are within bounds, its names unknown here.
+    Express(Express),
+    /// Look at a point in front of the face.
+    Look(Look),
+    /// What the face does while it says nothing.
+    State(FaceState),
+    /// Show a text.
+    Caption {
+        /// With this utterance; at once where there is none.
+        id: Option<String>,
+        /// From this tick of the utterance's sound on.
+        start: i64,
+        /// One line without control characters; empty clears the screen.
+        text: String,
+    },
+    /// Close the connection, once all that was said before is sent.
+    Close,
 }
 
 /// What an error answer says.
@@ -83,6 +103,11 @@ pub struct Session {
     /// Accepted and not ended, the open one included.
     pending: Vec<String>,
     raw_count: u64,
+    /// Wanted before anything else.
+    token: Option<Token>,
+    /// Nothing counts any more.
+    closing: bool,
+    taken: u64,
 }
 
 impl Session {
@@ -95,7 +120,31 @@ impl Session {
             open: None,
             pending: Vec::new(),
             raw_count: 0,
+            token: None,
+            closing: false,
+            taken: 0,
         }
+    }
+
+    /// The same, of a client that has to bring `token` first.
+    #[must_use]
+    pub fn guarded(limits: Limits, token: Token) -> Self {
+        let mut session = Self::new(limits);
+        session.lines = Lines::new(limits::STRANGER_LINE_BYTES_MAX);
+        session.token = Some(token);
+        session
+    }
+
+    /// Whether the client may say more than its token.
+    #[must_use]
+    pub fn is_trusted(&self) -> bool {
+        self.token.is_none()
+    }
+
+    /// Lines and frames that were taken so far, right or wrong: what a rate is counted in.
+    #[must_use]
+    pub fn taken(&self) -> u64 {
+        self.taken
     }
 
     /// Takes bytes as they came in, cut anywhere; what is to be done goes to `out`.
@@ -105,6 +154,27 @@ impl Session {
                 self.take(&line, out);
             }
         }
+    }
+
+    /// Takes a text frame of a WebSocket: one or more whole lines, the last with or without its end.
+    pub fn receive_text(&mut self, text: &str, out: &mut Vec<Action>) {
+        self.receive(text.as_bytes(), out);
+        if !text.ends_with('\n') {
+            self.receive(b"\n", out);
+        }
+    }
+
+    /// Takes a binary frame of a WebSocket: sound of the open utterance, as the bytes of `audio` are.
+    pub fn receive_sound(&mut self, bytes: &[u8], out: &mut Vec<Action>) {
+        if self.closing {
+            return;
+        }
+        self.taken += 1;
+        let done = match &self.token {
+            Some(_) => Err(stranger()),
+            None => self.sound(bytes, out),
+        };
+        self.answer(done, out);
     }
 
     /// The client sends no more: its last line, though cut off, counts, and the open utterance is closed.
@@ -137,7 +207,12 @@ impl Session {
     }
 
     fn take(&mut self, line: &Line, out: &mut Vec<Action>) {
+        if self.closing {
+            return;
+        }
+        self.taken += 1;
         let done = match line {
+            Line::TooLong if self.token.is_some() => Err(stranger()),
             Line::TooLong => Err((
                 ErrorCode::Limit,
                 format!(
@@ -153,6 +228,10 @@ impl Session {
                 Err(_) => Err((ErrorCode::Malformed, "a line is UTF-8 text".to_owned())),
             },
         };
+        self.answer(done, out);
+    }
+
+    fn answer(&self, done: Result<(), Refusal>, out: &mut Vec<Action>) {
         if let Err((code, message)) = done {
             out.push(Action::Reply(DaemonMessage::Error {
                 id: self.open.as_ref().filter(|o| !o.void).map(|o| o.id.clone()),
@@ -171,7 +250,10 @@ impl Session {
             return Ok(());
         }
         if !text.starts_with('{') {
-            return self.raw_line(text, out);
+            return match self.token {
+                Some(_) => Err(stranger()),
+                None => self.raw_line(text, out),
+            };
         }
         let message: ClientMessage =
             serde_json::from_str(text).map_err(|e| (ErrorCode::Malformed, raw_reason(&e)))?;
@@ -180,6 +262,9 @@ impl Session {
 
     fn message(&mut self, message: ClientMessage, out: &mut Vec<Action>) -> Result<(), Refusal> {
         match message {
+            ClientMessage::Hello { version, client } => self.hello(version, client.as_deref(), out),
+            ClientMessage::Auth { token } => self.auth(&token, out),
+            _ if self.token.is_some() => Err(stranger()),
             ClientMessage::Begin(begin) => self.begin(begin, out),
             ClientMessage::Phones { phones } => {
                 let limits = self.limits.clone();
@@ -187,25 +272,24 @@ impl Session {
                 if open.void {
                     return Ok(());
                 }
-                let segments = open.labels(&phones, &limits)?;
+                let (segments, warnings) = open.labels(&phones, &limits)?;
                 let id = open.id.clone();
+                for message in warnings {
+                    let id = Some(id.clone());
+                    out.push(Action::Reply(DaemonMessage::Warning { id, message }));
+                }
                 if !segments.is_empty() {
                     out.push(Action::Segments { id, segments });
                 }
                 Ok(())
             }
             ClientMessage::Audio { data } => {
-                let limits = self.limits.clone();
                 let open = self.opened("audio")?;
                 if open.void {
                     return Ok(());
                 }
-                let mono = open.audio(&data, &limits)?;
-                let id = open.id.clone();
-                if !mono.is_empty() {
-                    out.push(Action::Audio { id, mono });
-                }
-                Ok(())
+                let bytes = open::sound_bytes(&data)?;
+                self.sound(&bytes, out)
             }
             ClientMessage::End {} => {
                 self.opened("end")?;
@@ -213,21 +297,87 @@ impl Session {
                 Ok(())
             }
             ClientMessage::Stop { id } => self.stop(id, out),
+            ClientMessage::Express(express) => {
+                out.push(face::express(express)?);
+                Ok(())
+            }
+            ClientMessage::Look(look) => {
+                out.push(face::look(look)?);
+                Ok(())
+            }
+            ClientMessage::State { state } => {
+                out.push(Action::State(state));
+                Ok(())
+            }
+            ClientMessage::Caption(caption) => self.caption(&caption, out),
             ClientMessage::Ping { token } => {
-                if token
-                    .as_ref()
-                    .is_some_and(|t| chars_beyond(t, limits::TOKEN_CHARS_MAX))
-                {
-                    return Err((
-                        ErrorCode::Limit,
-                        format!("a token has at most {} characters", limits::TOKEN_CHARS_MAX),
-                    ));
-                }
+                within(token.as_deref(), limits::TOKEN_CHARS_MAX, "a token")?;
                 let version = VERSION;
                 out.push(Action::Reply(DaemonMessage::Pong { token, version }));
                 Ok(())
             }
         }
+    }
+
+    fn hello(
+        &mut self,
+        version: Option<u32>,
+        client: Option<&str>,
+        out: &mut Vec<Action>,
+    ) -> Result<(), Refusal> {
+        within(client, limits::NAME_CHARS_MAX, "a client's name")?;
+        if let Some(version) = version.filter(|v| !(1..=VERSION).contains(v)) {
+            return Err((
+                ErrorCode::Version,
+                format!("version {version} of this protocol is not known; speak 1 to {VERSION}"),
+            ));
+        }
+        out.push(hello());
+        Ok(())
+    }
+
+    fn auth(&mut self, guess: &str, out: &mut Vec<Action>) -> Result<(), Refusal> {
+        if let Some(token) = &self.token {
+            if !token.is(guess) {
+                self.closing = true;
+                self.answer(Err((ErrorCode::Auth, "the token is wrong".to_owned())), out);
+                out.push(Action::Close);
+                return Ok(());
+            }
+            self.token = None;
+            self.lines.set_max(self.limits.line_bytes);
+        }
+        out.push(hello());
+        Ok(())
+    }
+
+    /// Sound of the open utterance.
+    fn sound(&mut self, bytes: &[u8], out: &mut Vec<Action>) -> Result<(), Refusal> {
+        let limits = self.limits.clone();
+        let open = self.opened("audio")?;
+        if open.void {
+            return Ok(());
+        }
+        let mono = open.audio(bytes, &limits)?;
+        let id = open.id.clone();
+        if !mono.is_empty() {
+            out.push(Action::Audio { id, mono });
+        }
+        Ok(())
+    }
+
+    fn caption(&mut self, caption: &Caption, out: &mut Vec<Action>) -> Result<(), Refusal> {
+        let (start, text) = face::caption(caption)?;
+        let id = match &mut self.open {
+            Some(open) if open.void => return Ok(()),
+            Some(open) => {
+                open.caption(start)?;
+                Some(open.id.clone())
+            }
+            None => None,
+        };
+        out.push(Action::Caption { id, start, text });
+        Ok(())
     }
 
     fn begin(&mut self, begin: Begin, out: &mut Vec<Action>) -> Result<(), Refusal> {
@@ -294,11 +444,21 @@ impl Session {
                 if open.void {
                     return Ok(());
                 }
-                open.check(segment, &self.limits)?;
+                open.check(
+                    segment.phone.code(),
+                    segment.start,
+                    segment.end,
+                    &self.limits,
+                )?;
             }
             _ => {
                 let mut open = Open::raw(self.raw_id());
-                open.check(segment, &self.limits)?;
+                open.check(
+                    segment.phone.code(),
+                    segment.start,
+                    segment.end,
+                    &self.limits,
+                )?;
                 self.accept(open, Sound::Silent, out)?;
                 self.raw_count += 1;
             }
@@ -349,6 +509,31 @@ impl Session {
             out.push(Action::End { id: open.id });
         }
     }
+}
+
+/// What everything but a greeting is answered with before the token has come.
+fn stranger() -> Refusal {
+    let message = "this daemon wants its token first: {\"type\":\"auth\",\"token\":\"…\"}";
+    (ErrorCode::Auth, message.to_owned())
+}
+
+fn hello() -> Action {
+    Action::Reply(DaemonMessage::Hello {
+        version: VERSION,
+        daemon: concat!("mouthpiece ", env!("CARGO_PKG_VERSION")).to_owned(),
+        alphabets: Alphabet::ALL.map(|a| a.name().to_owned()).to_vec(),
+    })
+}
+
+/// Whether a text is no longer than it may be.
+fn within(text: Option<&str>, chars_max: usize, what: &str) -> Result<(), Refusal> {
+    if text.is_some_and(|t| chars_beyond(t, chars_max)) {
+        return Err((
+            ErrorCode::Limit,
+            format!("{what} has at most {chars_max} characters"),
+        ));
+    }
+    Ok(())
 }
 
 fn chars_beyond(text: &str, max: usize) -> bool {

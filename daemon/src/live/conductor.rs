@@ -16,6 +16,8 @@ use std::sync::Arc;
 use std::thread::Thread;
 use std::time::Duration;
 
+use super::captions::Captions;
+use super::showing::Showing;
 use super::sound::Output;
 use super::time::Flow;
 use super::utterance::{Begin, Utterance};
@@ -49,6 +51,10 @@ pub enum Command {
     Fail(u64, ErrorCode, String),
     /// Stop one utterance, or everything.
     Stop(Option<u64>),
+    /// What the face shows from now on.
+    Show(Box<Showing>),
+    /// A text for the screen: from this tick of an utterance's sound on, or at once.
+    Caption(Option<u64>, i64, Arc<str>),
     /// The process ends.
     Quit,
 }
@@ -70,15 +76,27 @@ pub enum Cue {
     Stop { key: u64, at: i64 },
     /// It is over and may be forgotten.
     Done { key: u64 },
+    /// Show this from the instant on that is heard when it comes.
+    Show(Box<Showing>),
+}
+
+/// What leads to and from the sound thread.
+pub struct Ends {
+    pub commands: mpsc::Receiver<Command>,
+    pub cues: crossbeam::channel::Sender<Cue>,
+    /// The thread that takes the cues: it naps while it is far enough ahead.
+    pub face: Option<Thread>,
+    pub captions: Arc<Captions>,
 }
 
 /// The sound thread's state; [`Conductor::step`] is its body.
 pub struct Conductor {
     output: Output,
-    commands: mpsc::Receiver<Command>,
-    cues: crossbeam::channel::Sender<Cue>,
-    /// The thread that takes the cues: it naps while it is far enough ahead.
-    face: Option<Thread>,
+    ends: Ends,
+    /// The caption that was shown last of those that go with an utterance: whose, and which.
+    captioned: Option<(u64, usize)>,
+    /// What is on the screen goes with no utterance.
+    captioned_alone: bool,
     speech: Speech,
     /// In the order of their `begin`; those that speak have a start.
     utterances: Vec<Utterance>,
@@ -93,18 +111,16 @@ pub struct Conductor {
 impl Conductor {
     pub fn new(
         output: Output,
-        commands: mpsc::Receiver<Command>,
-        cues: crossbeam::channel::Sender<Cue>,
-        face: Option<Thread>,
+        ends: Ends,
         speech: Speech,
         look_ahead: i64,
         vitals: Arc<Vitals>,
     ) -> Self {
         Self {
             output,
-            commands,
-            cues,
-            face,
+            ends,
+            captioned: None,
+            captioned_alone: false,
             speech,
             utterances: Vec::new(),
             look_ahead,
@@ -119,7 +135,7 @@ impl Conductor {
         self.output.poll(now_ns);
         // Bounded by what fits into the channel, so that no sender keeps sound from being mixed.
         for _ in 0..COMMANDS_MAX {
-            match self.commands.try_recv() {
+            match self.ends.commands.try_recv() {
                 Ok(command) => self.obey(command, now_ns),
                 Err(mpsc::error::TryRecvError::Empty) => break,
                 Err(mpsc::error::TryRecvError::Disconnected) => {
@@ -181,6 +197,16 @@ impl Conductor {
                 let all = std::mem::take(&mut self.utterances);
                 self.vitals.sound.stopped.add(all.len() as u64);
                 self.silence(all, now_ns, Utterance::tell_stopped);
+            }
+            Command::Show(showing) => self.cue(Cue::Show(showing)),
+            Command::Caption(None, _, text) => {
+                self.captioned_alone = true;
+                self.ends.captions.set(text);
+            }
+            Command::Caption(Some(key), start, text) => {
+                if let Some(utterance) = self.find(key) {
+                    utterance.captions.push((start, text));
+                }
             }
             Command::Quit => self.quit = true,
         }
@@ -330,6 +356,32 @@ impl Conductor {
         } else {
             DeviceState::Unwanted
         });
+        self.caption(audible);
+    }
+
+    /// Shows the text that goes with what is heard, and clears it with its utterance.
+    fn caption(&mut self, audible: i64) {
+        let mut now = None;
+        for utterance in &self.utterances {
+            let Some(heard) = utterance.start.map(|start| audible - start) else {
+                continue;
+            };
+            let begun = utterance.captions.partition_point(|(at, _)| *at <= heard);
+            if let Some((_, text)) = begun.checked_sub(1).map(|n| &utterance.captions[n]) {
+                now = Some(((utterance.key, begun), text));
+            }
+        }
+        match now {
+            Some((which, text)) if self.captioned != Some(which) => {
+                self.ends.captions.set(Arc::clone(text));
+                self.captioned = Some(which);
+                self.captioned_alone = false;
+            }
+            None if self.captioned.take().is_some() && !self.captioned_alone => {
+                self.ends.captions.set(Arc::from(""));
+            }
+            _ => {}
+        }
     }
 
     fn find(&mut self, key: u64) -> Option<&mut Utterance> {
@@ -344,8 +396,8 @@ impl Conductor {
     /// The simulation thread empties its cues before every step, so a full channel empties at once;
     /// without that thread there is nothing to go on for.
     fn cue(&mut self, cue: Cue) {
-        self.quit |= self.cues.send(cue).is_err();
-        if let Some(face) = &self.face {
+        self.quit |= self.ends.cues.send(cue).is_err();
+        if let Some(face) = &self.ends.face {
             face.unpark();
         }
     }

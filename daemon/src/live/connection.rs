@@ -3,6 +3,8 @@
 //! A client that reads nothing any more is let go after a while, one that dies in mid sentence
 //! leaves a face that finishes what it has. A client that sends faster than is spoken waits.
 
+mod face;
+
 use std::collections::HashMap;
 use std::path::PathBuf;
 use std::time::Duration;
@@ -100,6 +102,14 @@ impl Client {
                         self.handle.stop(Some(key)).await;
                     }
                 }
+                Action::Express(express) => match face::express(&express) {
+                    Ok(showing) => self.handle.show(showing).await,
+                    Err(error) => self.send(&refused(error.to_string())).await?,
+                },
+                Action::Look(look) => self.handle.show(face::look(&look)).await,
+                Action::State(state) => self.handle.show(face::state(state)).await,
+                Action::Caption { id, start, text } => self.caption(id, start, text).await,
+                Action::Close => return Err(std::io::ErrorKind::ConnectionAborted.into()),
             }
         }
         Ok(())
@@ -170,6 +180,17 @@ impl Client {
         self.handle.end(key).await;
     }
 
+    async fn caption(&self, id: Option<String>, start: i64, text: String) {
+        let key = match id {
+            None => None,
+            Some(id) => match self.keys.get(&id) {
+                Some(&key) => Some(key),
+                None => return, // it has ended meanwhile
+            },
+        };
+        self.handle.caption(key, start, text).await;
+    }
+
     async fn fail(&self, key: u64, message: String) {
         self.handle.fail(key, ErrorCode::Audio, message).await;
     }
@@ -192,5 +213,15 @@ impl Client {
         tokio::time::timeout(WRITE_PATIENCE, self.write.write_all(line.as_bytes()))
             .await
             .map_err(|_| std::io::Error::from(std::io::ErrorKind::TimedOut))?
+    }
+}
+
+/// What is answered when a face cannot be shown.
+fn refused(message: String) -> DaemonMessage {
+    DaemonMessage::Error {
+        id: None,
+        code: ErrorCode::Face,
+        message,
+        fatal: false,
     }
 }

@@ -3,18 +3,19 @@
 //! | thread | module | does |
 //! |---|---|---|
 //! | main | [`window`] | draws the head as it is at the audible instant of the picture |
-//! | `simulation` | [`face`], [`score`] | moves the head, a bounded lead ahead (HABER 5.3) |
+//! | `simulation` | [`face`], [`score`], [`showing`] | moves the head, a bounded lead ahead (HABER 5.3) |
 //! | `sound` | [`conductor`], [`utterance`], [`sound`] | utterances in turn, mixed into the device's ring |
 //! | the device's own | `sound::callback` | takes from the ring, stamps the clock |
 //! | `net` | [`server`], [`connection`] | sockets; nothing real-time |
 //!
 //! Between them: [`clock`] (which tick is heard now), [`frames`] (key frames, with epochs), bounded
-//! channels for commands, cues and answers. [`player`] puts them together. [`vitals`] is what each says of itself,
-//! [`motion`] whether the face moves. [`speaker`] is what `say`
+//! channels for commands, cues and answers, and a slot with the text on the screen ([`captions`]). [`player`] puts
+//! them together. [`vitals`] is what each says of itself, [`motion`] whether the face moves. [`speaker`] is what `say`
 //! does without a daemon, [`client`] what it does with one; both take their utterance from [`source`].
 //! [`sync`] is a test of sound against picture, judged from outside. All time is [`time`]'s.
 
 mod address;
+mod captions;
 mod client;
 mod clock;
 mod commands;
@@ -26,6 +27,7 @@ mod motion;
 mod player;
 mod score;
 mod server;
+mod showing;
 mod sound;
 mod source;
 mod speaker;

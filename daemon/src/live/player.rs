@@ -11,11 +11,13 @@ use mouthpiece_rig::{Simulation, TICK_RATE};
 use mouthpiece_speech::Idle;
 use tokio::sync::mpsc;
 
+use super::captions::Captions;
 use super::clock::{AudibleClock, ClockCell};
-use super::conductor::{COMMANDS_MAX, CUES_MAX, Command, Conductor};
+use super::conductor::{COMMANDS_MAX, CUES_MAX, Command, Conductor, Ends};
 use super::face::Face;
 use super::frames::{FrameReader, key_frames};
 use super::score::Score;
+use super::showing::Showing;
 use super::sound::{Choice, Output};
 use super::time::{Origin, drive};
 use super::utterance::Begin;
@@ -42,6 +44,9 @@ pub struct Sight {
     pub origin: Origin,
     /// Where the window says how it is.
     pub vitals: Arc<Vitals>,
+    #[allow(dead_code, reason = "for the window that draws it")]
+    /// The text that goes with what is heard.
+    pub captions: Arc<Captions>,
 }
 
 /// Sends utterances to the sound thread. Clones reach the same one.
@@ -68,7 +73,8 @@ impl Player {
         let (cue, cues) = crossbeam::channel::bounded(CUES_MAX);
         let (writer, frames) = key_frames();
 
-        let score = Score::new(&cast.speech, Idle::new(seed));
+        let calibration = cast.head.calibration.clone();
+        let score = Score::new(&cast.speech, calibration, Idle::new(seed));
         let clock = AudibleClock::new(Arc::clone(&cell));
         let mut body = Simulation::new(Arc::clone(&cast.head));
         let face_vitals = Arc::clone(&vitals);
@@ -85,6 +91,8 @@ impl Player {
         let face = simulation.thread().clone();
         let speech = cast.speech.clone();
         let look_ahead = i64::from(look_ahead_ms) * TICK_RATE / 1000;
+        let captions = Arc::new(Captions::default());
+        let written = Arc::clone(&captions);
         let sound_cell = Arc::clone(&cell);
         let sound_vitals = Arc::clone(&vitals);
         let (opened, has_sound) = std::sync::mpsc::sync_channel(1);
@@ -92,15 +100,13 @@ impl Player {
             let output = Output::open(choice, sound_cell, origin);
             // Nobody waits for it only when the start itself failed.
             let _ = opened.send(output.has_device());
-            let mut conductor = Conductor::new(
-                output,
-                inbox,
-                cue,
-                Some(face),
-                speech,
-                look_ahead,
-                sound_vitals,
-            );
+            let ends = Ends {
+                commands: inbox,
+                cues: cue,
+                face: Some(face),
+                captions: written,
+            };
+            let mut conductor = Conductor::new(output, ends, speech, look_ahead, sound_vitals);
             drive(|| conductor.step(origin.now_ns()));
         })?;
 
@@ -118,6 +124,7 @@ impl Player {
             clock: AudibleClock::new(cell),
             origin,
             vitals,
+            captions,
         };
         Ok((player, sight))
     }
@@ -183,6 +190,16 @@ impl Handle {
     /// Stops one utterance, or everything.
     pub async fn stop(&self, key: Option<u64>) {
         self.send(Command::Stop(key)).await;
+    }
+
+    /// Has the face show something from now on.
+    pub async fn show(&self, showing: Showing) {
+        self.send(Command::Show(Box::new(showing))).await;
+    }
+
+    /// A text for the screen: from tick `start` of an utterance's sound on, or at once.
+    pub async fn caption(&self, key: Option<u64>, start: i64, text: String) {
+        self.send(Command::Caption(key, start, text.into())).await;
     }
 
     /// Waits while the sound thread has enough to do. Without that thread there is nobody to tell:

@@ -1,12 +1,14 @@
-//! What the face is to do at any tick: the tracks of utterances on the timeline, and idle life under them.
+//! What the face is to do at any tick: the tracks of utterances on the timeline, what clients have it
+//! show over them, and idle life under them.
 //!
 //! On the simulation thread. A function of the tick alone between two cues, so that a rewind finds
 //! what was there. Knows nothing of sound.
 
-use mouthpiece_rig::{Control, Controls, TICK_RATE};
+use mouthpiece_rig::{Calibration, Control, Controls, Mouth, TICK_RATE};
 use mouthpiece_speech::{Correction, Idle, Manner, Speech, State, States, Track};
 
 use super::conductor::Cue;
+use super::showing::{Showing, Shown};
 
 /// How long before its first sound a label can be felt: the reach of anticipation, and of the breath
 /// before it.
@@ -37,19 +39,24 @@ struct Spoken {
 pub struct Score {
     spoken: Vec<Spoken>,
     rest: Controls,
+    /// How this mouth answers: expressions keep off lips that must close.
+    calibration: Calibration,
     idle: Idle,
     states: States,
+    shown: Shown,
     /// What was shown already and is not so any more.
     correction: Correction,
 }
 
 impl Score {
-    pub fn new(speech: &Speech, idle: Idle) -> Self {
+    pub fn new(speech: &Speech, calibration: Calibration, idle: Idle) -> Self {
         Self {
             spoken: Vec::new(),
             rest: speech.track(&[]).controls_at(0),
+            calibration,
             idle,
             states: States::default(),
+            shown: Shown::default(),
             correction: Correction::default(),
         }
     }
@@ -58,14 +65,22 @@ impl Score {
     /// shown at `audible` already goes over without a jump.
     pub fn take(&mut self, cue: Cue, audible: i64) -> i64 {
         let told = self.controls_at(audible);
-        let felt = self.change(cue);
+        let felt = self.change(cue, audible);
         let known = self.known_at(audible);
         self.correction = Correction::new(audible, &told, &known);
         felt
     }
 
-    fn change(&mut self, cue: Cue) -> i64 {
+    fn change(&mut self, cue: Cue, audible: i64) -> i64 {
         match cue {
+            Cue::Show(showing) => {
+                match *showing {
+                    Showing::Face { controls, fade } => self.shown.face(audible, controls, fade),
+                    Showing::Look { at, fade } => self.shown.look(audible, at, fade),
+                    Showing::State(state) => self.states.change(audible, state),
+                }
+                audible
+            }
             Cue::Start { key, start, track } => {
                 let felt = start + track.start() - FELT_BEFORE_TICKS;
                 self.spoken.push(Spoken {
@@ -149,8 +164,13 @@ impl Score {
             speaking = speaking.max(spoken.track.speaking_at(local) * share);
         }
         let mut controls = controls.clamped();
+        if let Some(face) = self.shown.face_at(tick) {
+            let mouth = Mouth::of(&self.calibration, &controls, speaking);
+            controls.express(&face, 1.0, mouth);
+        }
         let manner: Manner = self.states.at(tick).towards(State::Speaking, speaking);
         self.idle.add(tick, &manner, &mut controls);
+        self.shown.aim(tick, &mut controls);
         for spoken in &self.spoken {
             let local = tick - spoken.start;
             let share = spoken.share(tick);
@@ -162,6 +182,7 @@ impl Score {
 
     /// Lets go of what is not felt any more at `tick`.
     pub fn forget_before(&mut self, tick: i64) {
+        self.shown.forget_before(tick);
         self.spoken.retain(|spoken| {
             let end = spoken.start + spoken.track.end();
             !spoken.done || spoken.stop.unwrap_or(i64::MAX).min(end) + FELT_AFTER_TICKS > tick
@@ -214,7 +235,7 @@ mod tests {
     #[test]
     fn an_utterance_is_felt_at_its_place_and_nowhere_else() {
         let speech = speech();
-        let mut score = Score::new(&speech, Idle::new(1));
+        let mut score = Score::new(&speech, Calibration::default(), Idle::new(1));
         let rest = jaw(&score, 0);
         let felt = score.take(
             Cue::Start {
@@ -236,7 +257,7 @@ mod tests {
     #[test]
     fn a_stopped_mouth_goes_to_rest_without_a_jump() {
         let speech = speech();
-        let mut score = Score::new(&speech, Idle::new(1));
+        let mut score = Score::new(&speech, Calibration::default(), Idle::new(1));
         let rest = jaw(&score, 0);
         score.take(
             Cue::Start {
@@ -256,5 +277,61 @@ mod tests {
             last = now;
         }
         assert!((last - rest).abs() < 1e-4);
+    }
+
+    #[test]
+    fn an_expression_over_speech_leaves_the_lips_to_speech_and_the_brows_to_itself() {
+        let speech = speech();
+        let mut score = Score::new(&speech, Calibration::default(), Idle::new(1));
+        // The calibration of a mouth that no muscle opens: its lips always have to meet.
+        let mut face = Controls::default();
+        face[Control::LevatorLabiiSuperioris] = 0.8;
+        face[Control::CorrugatorSupercilii] = 0.8;
+        let show = Showing::Face {
+            controls: face,
+            fade: 0,
+        };
+        score.take(Cue::Show(Box::new(show)), 0);
+        let track = Box::new(speech.track(&open_vowel()));
+        score.take(
+            Cue::Start {
+                key: 1,
+                start: 96_000,
+                track,
+            },
+            0,
+        );
+        let silent = score.controls_at(20_000);
+        assert!(silent[Control::LevatorLabiiSuperioris] > 0.75);
+        let talking = score.controls_at(96_000 + 33_600);
+        assert!(talking[Control::LevatorLabiiSuperioris] < 0.05);
+        assert!(talking[Control::CorrugatorSupercilii] > 0.75);
+    }
+
+    #[test]
+    fn an_utterance_that_is_cut_off_leaves_the_mouth_at_rest() {
+        let speech = speech();
+        let mut score = Score::new(&speech, Calibration::default(), Idle::new(1));
+        let rest = jaw(&score, 0);
+        // Its client died in the middle of a vowel: no silence follows.
+        let track = Box::new(speech.track(&open_vowel()[..2]));
+        let start = 48_000;
+        score.take(
+            Cue::Start {
+                key: 1,
+                start,
+                track,
+            },
+            0,
+        );
+        assert!(jaw(&score, start + 33_600) > rest + 0.05);
+        for done in [false, true] {
+            let later = jaw(&score, start + 57_600 + 24_000);
+            assert!(
+                (later - rest).abs() < 1e-3,
+                "{later} against {rest}, {done}"
+            );
+            score.take(Cue::Done { key: 1 }, start + 57_600);
+        }
     }
 }

@@ -50,6 +50,8 @@ pub(super) struct Utterance {
     pub(super) delivery: Delivery,
     labelled: i64,
     pub(super) ended: bool,
+    /// Texts, and from which tick of its sound each is on the screen.
+    pub(super) captions: Vec<(i64, Arc<str>)>,
     /// Its first tick on the timeline.
     pub(super) start: Option<i64>,
     told_start: bool,
@@ -68,6 +70,7 @@ impl Utterance {
             delivery: Delivery::default(),
             labelled: 0,
             ended: false,
+            captions: Vec::new(),
             start: None,
             told_start: false,
             next_progress: 0,

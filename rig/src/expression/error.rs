@@ -21,6 +21,8 @@ pub enum ExpressionError {
         line: usize,
         message: String,
     },
+    #[error("{0}")]
+    Setting(String),
     #[error("{file} has schema {found}, but this version reads 1; take the file of this version")]
     Schema { file: String, found: u32 },
     #[error(

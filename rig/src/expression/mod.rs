@@ -44,6 +44,7 @@ use std::path::Path;
 use std::sync::OnceLock;
 
 use serde::Deserialize;
+use serde::de::value::{Error as ValueError, MapDeserializer};
 
 use crate::Controls;
 pub use error::ExpressionError;
@@ -72,6 +73,21 @@ impl Expression {
     #[must_use]
     pub const fn controls(&self) -> &Controls {
         &self.muscles.0
+    }
+}
+
+impl Controls {
+    /// Controls by name, all else 0; a paired muscle's name with `_l` or `_r` behind it is one belly.
+    ///
+    /// # Errors
+    /// Names the control that is unknown, out of its range or there twice.
+    pub fn named<'a>(
+        values: impl IntoIterator<Item = (&'a str, f32)>,
+    ) -> Result<Self, ExpressionError> {
+        let map = MapDeserializer::<_, ValueError>::new(values.into_iter());
+        let settings = Settings::deserialize(map);
+        let settings = settings.map_err(|why| ExpressionError::Setting(why.to_string()))?;
+        Ok(settings.0)
     }
 }
 

@@ -3,13 +3,15 @@
 use std::path::PathBuf;
 
 use base64::Engine as _;
-use mouthpiece_phonemes::{Phone, SampleRate, Segment, Stress, TICK_RATE, UnknownCode};
+use mouthpiece_phonemes::{
+    Alphabet, Notes, SampleRate, Segment, Stress, TICK_RATE, UnknownAlphabet, alphabet,
+};
 
 use super::{Refusal, Sound, chars_beyond};
-use crate::message::{Audio, Begin, ErrorCode, Label};
+use crate::message::{Audio, Begin, Label};
 use crate::pcm::Decoder;
 use crate::raw::clip;
-use crate::{Limits, Pcm, limits};
+use crate::{ErrorCode, Limits, Pcm, limits};
 
 #[derive(Debug)]
 pub(super) struct Open {
@@ -18,9 +20,15 @@ pub(super) struct Open {
     pub(super) raw: bool,
     /// It was stopped or failed: what still comes for it is ignored.
     pub(super) void: bool,
+    alphabet: Alphabet,
+    /// Symbols that were warned of.
+    warned: Vec<String>,
     /// Samples that label times count in; none for seconds.
     label_rate: Option<SampleRate>,
     labels: usize,
+    captions: usize,
+    /// When the last caption is shown, ticks.
+    captioned: i64,
     /// Where the last label ended, ticks.
     labelled: i64,
     decoder: Option<Decoder>,
@@ -34,8 +42,12 @@ impl Open {
             id,
             raw: true,
             void: false,
+            alphabet: Alphabet::Timit,
+            warned: Vec::new(),
             label_rate: Some(SampleRate::TIMIT),
             labels: 0,
+            captions: 0,
+            captioned: 0,
             labelled: 0,
             decoder: None,
             pcm: None,
@@ -45,15 +57,12 @@ impl Open {
 
     pub(super) fn new(begin: Begin, limits: &Limits) -> Result<(Self, Sound), Refusal> {
         check_id(&begin.id)?;
-        if let Some(alphabet) = begin.alphabet.as_deref().filter(|a| *a != "timit") {
-            return Err((
-                ErrorCode::Label,
-                format!(
-                    "the alphabet `{}` is not known; use `timit`",
-                    clip(alphabet)
-                ),
-            ));
-        }
+        let alphabet = match &begin.alphabet {
+            None => Alphabet::Timit,
+            Some(name) => clip(name)
+                .parse()
+                .map_err(|e: UnknownAlphabet| (ErrorCode::Label, e.to_string()))?,
+        };
         let label_rate = match begin.label_rate {
             None => None,
             Some(hz) => Some(SampleRate::new(hz).map_err(|e| (ErrorCode::Label, e.to_string()))?),
@@ -68,6 +77,7 @@ impl Open {
         };
         let open = Self {
             raw: false,
+            alphabet,
             label_rate,
             decoder: pcm.map(Decoder::new),
             pcm,
@@ -76,12 +86,12 @@ impl Open {
         Ok((open, sound))
     }
 
-    /// The labels of a message, all of them or none.
+    /// The segments of a message's labels, all of them or none, and what had to be guessed.
     pub(super) fn labels(
         &mut self,
         labels: &[Label],
         limits: &Limits,
-    ) -> Result<Vec<Segment>, Refusal> {
+    ) -> Result<(Vec<Segment>, Vec<String>), Refusal> {
         if labels.len() > limits.phones_per_message {
             return Err((
                 ErrorCode::Limit,
@@ -92,23 +102,73 @@ impl Open {
             ));
         }
         let before = (self.labels, self.labelled);
-        let segments: Result<Vec<Segment>, Refusal> = labels
-            .iter()
-            .map(|label| {
-                let segment = self.segment(label)?;
-                self.check(segment, limits)?;
-                Ok(segment)
-            })
-            .collect();
-        if segments.is_err() {
-            (self.labels, self.labelled) = before;
+        let mut segments = Vec::with_capacity(labels.len());
+        let mut notes = Notes::default();
+        let mut new = Vec::new();
+        for label in labels {
+            if let Err(refusal) = self.label(label, limits, &mut segments, &mut notes, &mut new) {
+                (self.labels, self.labelled) = before;
+                return Err(refusal);
+            }
         }
-        segments
+        self.warned.append(&mut new);
+        let warnings = notes.finish().into_iter().map(|note| note.text);
+        Ok((segments, warnings.collect()))
+    }
+
+    /// One label; symbols that are unknown for the first time go to `notes` and `new`.
+    fn label(
+        &mut self,
+        label: &Label,
+        limits: &Limits,
+        segments: &mut Vec<Segment>,
+        notes: &mut Notes,
+        new: &mut Vec<String>,
+    ) -> Result<(), Refusal> {
+        if chars_beyond(&label.phone, limits::SYMBOL_CHARS_MAX) {
+            return Err((
+                ErrorCode::Limit,
+                format!(
+                    "a phone has at most {} characters",
+                    limits::SYMBOL_CHARS_MAX
+                ),
+            ));
+        }
+        let stress = match label.stress {
+            None => None,
+            Some(0) => Some(Stress::Unstressed),
+            Some(1) => Some(Stress::Primary),
+            Some(2) => Some(Stress::Secondary),
+            Some(n) => {
+                return Err((ErrorCode::Label, format!("stress is 0, 1 or 2, not {n}")));
+            }
+        };
+        let (start, end) = (self.ticks(label.start)?, self.ticks(label.end)?);
+        self.check(&label.phone, start, end, limits)?;
+        let first = segments.len();
+        let spoken = alphabet::segments(self.alphabet, &label.phone, start, end, segments);
+        if stress.is_some() {
+            segments[first..].iter_mut().for_each(|s| s.stress = stress);
+        }
+        let warned = self.warned.len() + new.len();
+        if !spoken.exact
+            && warned < limits::WARNINGS_PER_UTTERANCE_MAX
+            && !self.warned.iter().chain(&*new).any(|w| *w == label.phone)
+        {
+            notes.symbol(self.alphabet, &label.phone, spoken, None);
+            new.push(label.phone.clone());
+        }
+        Ok(())
     }
 
     /// Whether a label can follow those before it; if so it is counted.
-    pub(super) fn check(&mut self, segment: Segment, limits: &Limits) -> Result<(), Refusal> {
-        let Segment { start, end, .. } = segment;
+    pub(super) fn check(
+        &mut self,
+        symbol: &str,
+        start: i64,
+        end: i64,
+        limits: &Limits,
+    ) -> Result<(), Refusal> {
         let seconds = |ticks: i64| ticks as f64 / TICK_RATE as f64;
         let wrong = if end <= start {
             Some("ends before it starts".to_owned())
@@ -125,7 +185,7 @@ impl Open {
                 ErrorCode::Label,
                 format!(
                     "the label `{}` at {:.3} s {wrong}",
-                    segment.phone,
+                    clip(symbol),
                     seconds(start)
                 ),
             ));
@@ -147,8 +207,30 @@ impl Open {
         Ok(())
     }
 
+    /// Whether a caption from tick `start` on can follow those before it; if so it is counted.
+    pub(super) fn caption(&mut self, start: i64) -> Result<(), Refusal> {
+        if self.captions >= limits::CAPTIONS_PER_UTTERANCE_MAX {
+            return Err((
+                ErrorCode::Limit,
+                format!(
+                    "an utterance has at most {} captions",
+                    limits::CAPTIONS_PER_UTTERANCE_MAX
+                ),
+            ));
+        }
+        if start < self.captioned {
+            return Err((
+                ErrorCode::Label,
+                "a caption starts before the one before it; send captions in order".to_owned(),
+            ));
+        }
+        self.captions += 1;
+        self.captioned = start;
+        Ok(())
+    }
+
     /// The samples of a message.
-    pub(super) fn audio(&mut self, data: &str, limits: &Limits) -> Result<Vec<f32>, Refusal> {
+    pub(super) fn audio(&mut self, bytes: &[u8], limits: &Limits) -> Result<Vec<f32>, Refusal> {
         let (Some(decoder), Some(pcm)) = (&mut self.decoder, self.pcm) else {
             return Err((
                 ErrorCode::State,
@@ -158,40 +240,13 @@ impl Open {
                 ),
             ));
         };
-        let bytes = base64::engine::general_purpose::STANDARD
-            .decode(data)
-            .map_err(|e| (ErrorCode::Audio, format!("the sound is no base64: {e}")))?;
         let frames_max = u64::from(limits.utterance_seconds) * u64::from(pcm.rate);
         if self.frames + (bytes.len() / pcm.frame_bytes()) as u64 > frames_max {
             return Err(too_long(limits));
         }
-        let mono = decoder.decode(&bytes);
+        let mono = decoder.decode(bytes);
         self.frames += mono.len() as u64;
         Ok(mono)
-    }
-
-    fn segment(&self, label: &Label) -> Result<Segment, Refusal> {
-        let phone = Phone::from_code(&label.phone).ok_or_else(|| {
-            (
-                ErrorCode::Label,
-                UnknownCode(clip(&label.phone)).to_string(),
-            )
-        })?;
-        let stress = match label.stress {
-            None => None,
-            Some(0) => Some(Stress::Unstressed),
-            Some(1) => Some(Stress::Primary),
-            Some(2) => Some(Stress::Secondary),
-            Some(n) => {
-                return Err((ErrorCode::Label, format!("stress is 0, 1 or 2, not {n}")));
-            }
-        };
-        Ok(Segment {
-            phone,
-            start: self.ticks(label.start)?,
-            end: self.ticks(label.end)?,
-            stress,
-        })
     }
 
     fn ticks(&self, time: f64) -> Result<i64, Refusal> {
@@ -213,6 +268,13 @@ impl Open {
             (ErrorCode::Label, format!("{time} is not {unit}"))
         })
     }
+}
+
+/// The bytes of an `audio` message.
+pub(super) fn sound_bytes(data: &str) -> Result<Vec<u8>, Refusal> {
+    base64::engine::general_purpose::STANDARD
+        .decode(data)
+        .map_err(|e| (ErrorCode::Audio, format!("the sound is no base64: {e}")))
 }
 
 fn check_id(id: &str) -> Result<(), Refusal> {

@@ -18,6 +18,8 @@ fn told(action: &Action) -> String {
         Action::Reply(DaemonMessage::Error { code, .. }) => format!("error {code:?}"),
         Action::Reply(DaemonMessage::Accepted { id }) => format!("accepted {id}"),
         Action::Reply(DaemonMessage::Pong { .. }) => "pong".to_owned(),
+        Action::Reply(DaemonMessage::Hello { .. }) => "hello".to_owned(),
+        Action::Reply(DaemonMessage::Warning { .. }) => "warning".to_owned(),
         Action::Reply(other) => format!("{other:?}"),
         Action::Begin { id, sound } => format!("begin {id} {sound:?}"),
         Action::Segments { id, segments } => {
@@ -30,6 +32,11 @@ fn told(action: &Action) -> String {
         Action::Audio { id, mono } => format!("{id} {} samples", mono.len()),
         Action::End { id } => format!("end {id}"),
         Action::Stop { id } => format!("stop {id:?}"),
+        Action::Express(face) => format!("express {:?}", face.expression),
+        Action::Look(look) => format!("look {:?}", look.at),
+        Action::State(state) => format!("state {state:?}"),
+        Action::Caption { id, start, text } => format!("caption {id:?} {start} {text}"),
+        Action::Close => "close".to_owned(),
     }
 }
 
@@ -131,6 +138,7 @@ fn every_limit_is_answered_and_the_connection_goes_on() {
         utterance_seconds: 1,
         pending: 1,
         files: false,
+        ..Limits::default()
     });
     let long = "x".repeat(201);
     let id = format!(r#"{{"type":"begin","id":"{}"}}"#, "i".repeat(65));
@@ -183,7 +191,7 @@ fn a_refused_message_changes_nothing() {
         &mut session,
         &[
             r#"{"type":"begin","id":"u","label_rate":8000}"#,
-            r#"{"type":"phones","phones":[{"start":0,"end":80,"phone":"b"},{"start":80,"end":90,"phone":"bb"}]}"#,
+            r#"{"type":"phones","phones":[{"start":0,"end":80,"phone":"b"},{"start":80,"end":90,"phone":"b","stress":3}]}"#,
             r#"{"type":"phones","phones":[{"start":0,"end":80,"phone":"b"},{"start":79,"end":90,"phone":"aa"}]}"#,
             r#"{"type":"phones","phones":[{"start":0.5,"end":80,"phone":"b"}]}"#,
             r#"{"type":"phones","phones":[{"start":0,"end":80,"phone":"b"}]}"#,
@@ -212,6 +220,137 @@ fn a_refused_message_changes_nothing() {
     );
 }
 
+#[test]
+fn labels_of_any_alphabet_become_phones_and_strange_ones_the_nearest() {
+    let mut session = Session::new(Limits::default());
+    let said = talk(
+        &mut session,
+        &[
+            r#"{"type":"begin","id":"u","alphabet":"ipa"}"#,
+            r#"{"type":"phones","phones":[{"start":0,"end":0.1,"phone":"ʃ"},{"start":0.1,"end":0.2,"phone":"ɬ"}]}"#,
+            r#"{"type":"phones","phones":[{"start":0.2,"end":0.3,"phone":"ɬ"},{"start":0.3,"end":0.4,"phone":"aɪɚ"}]}"#,
+            r#"{"type":"end"}"#,
+            r#"{"type":"begin","id":"v","alphabet":"klingon"}"#,
+            r#"{"type":"begin","id":"w"}"#,
+            r#"{"type":"phones","phones":[{"start":0,"end":0.1,"phone":"zz9"}]}"#,
+        ],
+    );
+    let phones: Vec<&str> = said.iter().map(|s| s.split(' ').next().unwrap()).collect();
+    assert_eq!(said[2], "warning", "{said:?}");
+    assert!(said[3].starts_with("u 0..4800 sh, 4800..9600 "), "{said:?}");
+    // Told once; a triphthong is two phones within its label.
+    assert_eq!(said[4].matches("..").count(), 3, "{said:?}");
+    assert_eq!(
+        phones[5..],
+        ["end", "error", "accepted", "begin", "warning", "w"]
+    );
+}
+
+#[test]
+fn faces_and_captions_are_checked_and_captions_go_with_their_utterance() {
+    let mut session = Session::new(Limits::default());
+    let said = talk(
+        &mut session,
+        &[
+            r#"{"type":"express","expression":"smile","weight":0.5}"#,
+            r#"{"type":"express"}"#,
+            r#"{"type":"express","expression":"smile","muscles":{}}"#,
+            r#"{"type":"express","expression":"smile","weight":2}"#,
+            r#"{"type":"express","expression":"smile","fade_s":-1}"#,
+            r#"{"type":"look","at":[1,2,300]}"#,
+            r#"{"type":"look","at":[1,2,0]}"#,
+            r#"{"type":"look"}"#,
+            r#"{"type":"state","state":"thinking"}"#,
+            r#"{"type":"state","state":"dancing"}"#,
+            r#"{"type":"caption","text":"now\nhere"}"#,
+            r#"{"type":"begin","id":"u"}"#,
+            r#"{"type":"caption","text":"one"}"#,
+            r#"{"type":"caption","text":"two","start":1.5}"#,
+            r#"{"type":"caption","text":"before","start":1}"#,
+        ],
+    );
+    assert_eq!(
+        said,
+        [
+            "express Some(\"smile\")",
+            "express None",
+            "error Face",
+            "error Face",
+            "error Face",
+            "look Some([1.0, 2.0, 300.0])",
+            "error Face",
+            "look None",
+            "state Thinking",
+            "error Malformed",
+            "caption None 0 now here",
+            "accepted u",
+            "begin u Silent",
+            "caption Some(\"u\") 0 one",
+            "caption Some(\"u\") 72000 two",
+            "error Label",
+        ]
+    );
+}
+
+#[test]
+fn a_stranger_gets_nothing_but_a_greeting_until_the_token_comes() {
+    let token = || Token::new("0123456789abcdef").unwrap();
+    let mut session = Session::guarded(Limits::default(), token());
+    let long = "x".repeat(limits::STRANGER_LINE_BYTES_MAX + 1);
+    let said = talk(
+        &mut session,
+        &[
+            r#"{"type":"hello","version":1}"#,
+            r#"{"type":"hello","version":99}"#,
+            r#"{"type":"stop"}"#,
+            "0 100 aa",
+            &long,
+            r#"{"type":"auth","token":"0123456789abcdef"}"#,
+            r#"{"type":"ping"}"#,
+        ],
+    );
+    assert_eq!(
+        said,
+        [
+            "hello",
+            "error Version",
+            "error Auth",
+            "error Auth",
+            "error Auth",
+            "hello",
+            "pong"
+        ]
+    );
+    let mut session = Session::guarded(Limits::default(), token());
+    let said = talk(
+        &mut session,
+        &[
+            r#"{"type":"auth","token":"0123456789abcdeF"}"#,
+            r#"{"type":"auth","token":"0123456789abcdef"}"#,
+        ],
+    );
+    assert_eq!(said, ["error Auth", "close"]);
+    assert!(!session.is_trusted());
+}
+
+#[test]
+fn frames_of_a_websocket_are_lines_and_sound() {
+    let mut session = Session::new(Limits::default());
+    let mut out = Vec::new();
+    session.receive_sound(&[0, 0], &mut out);
+    session.receive_text(
+        r#"{"type":"begin","id":"u","audio":{"rate":8000}}"#,
+        &mut out,
+    );
+    session.receive_sound(&[0, 0, 1], &mut out);
+    session.receive_sound(&[1], &mut out);
+    session.receive_text("{\"type\":\"end\"}\n{\"type\":\"ping\"}\n", &mut out);
+    let said: Vec<String> = out.iter().map(told).collect();
+    assert_eq!(said[0], "error State");
+    assert_eq!(said[3..], ["u 1 samples", "u 1 samples", "end u", "pong"]);
+    assert_eq!(session.taken(), 6);
+}
+
 /// Lines of clients, good and bad.
 fn line() -> impl Strategy<Value = Vec<u8>> {
     let fixed = prop::sample::select(vec![
@@ -223,6 +362,12 @@ fn line() -> impl Strategy<Value = Vec<u8>> {
         r#"{"type":"stop"}"#,
         r#"{"type":"stop","id":"a"}"#,
         r#"{"type":"ping","token":"t"}"#,
+        r#"{"type":"hello","version":1,"client":"c"}"#,
+        r#"{"type":"auth","token":"anything"}"#,
+        r#"{"type":"express","expression":"smile"}"#,
+        r#"{"type":"look","at":[0,0,1]}"#,
+        r#"{"type":"state","state":"listening"}"#,
+        r#"{"type":"caption","text":"t","start":1}"#,
         "",
         "0 100 aa",
         "100 200 b\r",
@@ -272,7 +417,7 @@ proptest! {
                     prop_assert_eq!(open, Some(id.as_str()));
                     open = None;
                 }
-                Action::Reply(_) | Action::Stop { .. } => {}
+                _ => {}
             }
         }
         prop_assert!(open.is_none(), "the end of the stream closes what is open");

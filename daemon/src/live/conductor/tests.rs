@@ -34,12 +34,16 @@ fn stage() -> Stage {
     })
     .unwrap();
     let now_ns = origin.now_ns();
+    let ends = Ends {
+        commands: inbox,
+        cues: cue,
+        face: None,
+        captions: Arc::default(),
+    };
     Stage {
         conductor: Conductor::new(
             output,
-            inbox,
-            cue,
-            None,
+            ends,
             speech,
             LOOK_AHEAD,
             Arc::new(Vitals::new(origin)),

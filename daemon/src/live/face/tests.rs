@@ -2,12 +2,13 @@
 
 use glam::Vec3;
 use mouthpiece_phonemes::{Phone, Segment};
-use mouthpiece_rig::Control;
+use mouthpiece_rig::{Calibration, Control};
 use mouthpiece_speech::{Idle, Speech};
 
 use super::*;
 use crate::live::clock::{ClockCell, Stamp};
 use crate::live::frames::{FrameReader, key_frames};
+use crate::live::showing::Showing;
 use crate::live::time::{Origin, ticks_from_ns};
 
 /// Follows the jaw it is told with some inertia; its state is that one number.
@@ -66,7 +67,7 @@ fn stage() -> Stage {
         jaw: 0.0,
         steps: 0,
     };
-    let score = Score::new(&speech, Idle::new(7));
+    let score = Score::new(&speech, Calibration::default(), Idle::new(7));
     let clock = AudibleClock::new(Arc::clone(&cell));
     Stage {
         face: Face::new(
@@ -150,6 +151,37 @@ fn a_late_utterance_and_its_stop_are_felt_from_the_audible_instant() {
     stage.settle(2500 * MS);
     let relaxed = stage.shown(120_000);
     assert!((relaxed - rest).abs() < 0.01, "{relaxed} against {rest}");
+}
+
+#[test]
+fn what_a_client_shows_is_felt_from_the_audible_instant_and_fades_away() {
+    let mut stage = stage();
+    stage.settle(1000 * MS);
+    let rest = stage.shown(48_000);
+    let mut controls = Controls::default();
+    controls[Control::Jaw] = 0.2;
+    for controls in [controls, Controls::default()] {
+        let face = Showing::Face {
+            controls,
+            fade: 9_600,
+        };
+        stage.cues.send(Cue::Show(Box::new(face))).unwrap();
+        stage.settle(
+            if controls == Controls::default() {
+                2000
+            } else {
+                1000
+            } * MS,
+        );
+        if controls != Controls::default() {
+            assert_eq!(stage.face.epoch, 1, "what was simulated ahead is void");
+            assert_eq!(stage.shown(48_000), rest, "no jump");
+            assert!(stage.shown(48_000 + 11_900) > rest + 0.1);
+        }
+    }
+    stage.settle(3000 * MS);
+    let after = stage.shown(144_000);
+    assert!((after - rest).abs() < 0.01, "{after} against {rest}");
 }
 
 #[test]
