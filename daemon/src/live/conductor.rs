@@ -52,7 +52,7 @@ pub enum Command {
     /// Stop one utterance, or everything.
     Stop(Option<u64>),
     /// What the face shows from now on.
-    Show(Box<Showing>),
+    Show(Showing),
     /// A text for the screen: from this tick of an utterance's sound on, or at once.
     Caption(Option<u64>, i64, Arc<str>),
     /// The process ends.
@@ -77,7 +77,7 @@ pub enum Cue {
     /// It is over and may be forgotten.
     Done { key: u64 },
     /// Show this from the instant on that is heard when it comes.
-    Show(Box<Showing>),
+    Show(Showing),
 }
 
 /// What leads to and from the sound thread.

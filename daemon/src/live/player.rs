@@ -194,7 +194,7 @@ impl Handle {
 
     /// Has the face show something from now on.
     pub async fn show(&self, showing: Showing) {
-        self.send(Command::Show(Box::new(showing))).await;
+        self.send(Command::Show(showing)).await;
     }
 
     /// A text for the screen: from tick `start` of an utterance's sound on, or at once.

@@ -74,8 +74,8 @@ impl Score {
     fn change(&mut self, cue: Cue, audible: i64) -> i64 {
         match cue {
             Cue::Show(showing) => {
-                match *showing {
-                    Showing::Face { controls, fade } => self.shown.face(audible, controls, fade),
+                match showing {
+                    Showing::Face { controls, fade } => self.shown.face(audible, *controls, fade),
                     Showing::Look { at, fade } => self.shown.look(audible, at, fade),
                     Showing::State(state) => self.states.change(audible, state),
                 }
@@ -288,10 +288,10 @@ mod tests {
         face[Control::LevatorLabiiSuperioris] = 0.8;
         face[Control::CorrugatorSupercilii] = 0.8;
         let show = Showing::Face {
-            controls: face,
+            controls: Box::new(face),
             fade: 0,
         };
-        score.take(Cue::Show(Box::new(show)), 0);
+        score.take(Cue::Show(show), 0);
         let track = Box::new(speech.track(&open_vowel()));
         score.take(
             Cue::Start {

@@ -12,7 +12,7 @@ use mouthpiece_speech::State;
 #[derive(Clone, Debug, PartialEq)]
 pub enum Showing {
     /// A face, reached after `fade` ticks; all 0 is none.
-    Face { controls: Controls, fade: i64 },
+    Face { controls: Box<Controls>, fade: i64 },
     /// Where to look; none is the face's own life. The eyes are quick, the head follows in `fade` ticks.
     Look { at: Option<Direction>, fade: i64 },
     /// What it does while it says nothing.

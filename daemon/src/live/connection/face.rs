@@ -23,7 +23,7 @@ pub(super) fn express(express: &Express) -> Result<Showing, ExpressionError> {
         (None, None) => Controls::default(),
     };
     Ok(Showing::Face {
-        controls: Controls::default().lerp(&full, express.weight.unwrap_or(1.0)),
+        controls: Box::new(Controls::default().lerp(&full, express.weight.unwrap_or(1.0))),
         fade: ticks(express.fade_s.unwrap_or(EXPRESS_FADE_S)),
     })
 }

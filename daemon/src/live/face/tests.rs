@@ -162,10 +162,10 @@ fn what_a_client_shows_is_felt_from_the_audible_instant_and_fades_away() {
     controls[Control::Jaw] = 0.2;
     for controls in [controls, Controls::default()] {
         let face = Showing::Face {
-            controls,
+            controls: Box::new(controls),
             fade: 9_600,
         };
-        stage.cues.send(Cue::Show(Box::new(face))).unwrap();
+        stage.cues.send(Cue::Show(face)).unwrap();
         stage.settle(
             if controls == Controls::default() {
                 2000
