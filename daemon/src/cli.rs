@@ -19,6 +19,8 @@ use mouthpiece_render::{Camera, Tier, View};
 use mouthpiece_rig::{Anatomy, TissueModel};
 use mouthpiece_speech::State;
 
+use crate::health::Door;
+
 pub use config::{ConfigArgs, ConfigCommand};
 pub use head::{CalibrateArgs, FitArgs, HeadCommand, InfoArgs, LandmarksArgs};
 pub use scene::{BackgroundArg, SceneArgs};
@@ -73,6 +75,9 @@ pub struct RunArgs {
     /// mouthpiece.sock in $XDG_RUNTIME_DIR]
     #[arg(long, value_name = "ADDR")]
     pub listen: Option<String>,
+    /// Where health is told (/healthz, /metrics, a page at /): HOST:PORT, or none [default: 127.0.0.1:7717]
+    #[arg(long, value_name = "ADDR")]
+    pub http: Option<Door>,
     #[command(flatten)]
     pub stage: StageArgs,
 }

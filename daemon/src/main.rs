@@ -9,10 +9,12 @@
 //! | [`export`], [`curves`], [`labels`], [`still`], [`bench`](mod@bench), [`doctor`] | the commands of these names |
 //! | [`avatar`] | curves for other avatars: ARKit, visemes, FAPs |
 //! | [`head`] | the head shop: `mouthpiece head …` |
+//! | [`health`] | how the live face is, over HTTP |
 //! | [`live`] | `run` and `say`: window, sound, sockets and the clock |
 //! | [`voices`] | speech engines of this machine, and labels for recordings |
 //! | [`media`] | sound and video files |
 //! | [`interrupt`] | Ctrl-C, for work that ends by itself |
+//! | [`memory`] | how much of it this process holds |
 //! | [`log`] | where log lines go |
 
 #![forbid(unsafe_code)]
@@ -30,6 +32,7 @@ mod dictionary;
 mod doctor;
 mod export;
 mod head;
+mod health;
 mod input;
 mod interrupt;
 mod labels;

@@ -7,6 +7,7 @@ use anyhow::Result;
 use super::value::Whole;
 use super::{Config, file};
 use crate::cli::{BackgroundArg, StageArgs, Usage};
+use crate::health::Door;
 
 /// Where a live face's configuration comes from; asked again when the file has changed.
 #[derive(Clone, Debug)]
@@ -14,6 +15,7 @@ pub struct Source {
     file: Option<PathBuf>,
     flags: StageArgs,
     listen: Option<String>,
+    http: Option<Door>,
 }
 
 impl Source {
@@ -23,7 +25,13 @@ impl Source {
             file: stage.config.clone().or_else(file::user_default),
             flags: stage.clone(),
             listen: listen.map(str::to_owned),
+            http: None,
         }
+    }
+
+    /// And the flag of who tells health.
+    pub fn with_http(self, http: Option<Door>) -> Self {
+        Self { http, ..self }
     }
 
     /// The file that is read, where there is one.
@@ -41,6 +49,7 @@ impl Source {
         if let Some(listen) = &self.listen {
             config.wire.listen = Some(listen.clone());
         }
+        set(&mut config.health.http, self.http.as_ref());
         if config.look.background == BackgroundArg::Transparent {
             let why = "--background transparent: a window is not; write out-%05d.png with `mouthpiece export`";
             return Err(Usage(why.into()).into());

@@ -10,6 +10,7 @@ use serde::{Deserialize, Deserializer, Serialize, Serializer};
 
 use super::log::Level;
 use crate::cli::{BackgroundArg, LiveTierArg, Size, SkinArg, StateArg, TissueArg};
+use crate::health::Door;
 
 /// A whole number from `MIN` to `MAX`.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
@@ -151,5 +152,5 @@ macro_rules! as_word {
     )+};
 }
 
-as_text!(Size, BackgroundArg);
+as_text!(Size, BackgroundArg, Door);
 as_word!(Level, LiveTierArg, SkinArg, StateArg, TissueArg);

@@ -1,5 +1,6 @@
 //! The commands of the live face, each put together from the modules beside this one.
 
+use std::sync::Arc;
 use std::time::Duration;
 
 use anyhow::{Result, bail};
@@ -18,6 +19,7 @@ use super::sync::{self, Flash};
 use super::window::{Display, Look, Wake};
 use crate::cli::{CastArgs, RunArgs, SayArgs, StageArgs};
 use crate::config::{self, Config};
+use crate::health::Health;
 use crate::interrupt::Interrupted;
 use crate::pipeline::Cast;
 
@@ -28,7 +30,7 @@ const CLOSE_PATIENCE: Duration = Duration::from_millis(300);
 pub fn run(args: &RunArgs) -> Result<()> {
     let stop = Stop::default();
     let net = runtime(&stop)?;
-    let source = config::Source::new(&args.stage, args.listen.as_deref());
+    let source = config::Source::new(&args.stage, args.listen.as_deref()).with_http(args.http);
     let config = source.load()?;
     if let Some(file) = source.file() {
         tracing::info!(file = %file.display(), "configured");
@@ -40,8 +42,14 @@ pub fn run(args: &RunArgs) -> Result<()> {
     let look = look(&config)?;
     // First, so that a second daemon ends before it has cost anything.
     let server = net.block_on(Server::bind(&address))?;
+    let door = net.block_on(config.health.http.open(None))?;
     let cast = cast(&config)?;
     let (player, sight) = start(&cast, &config)?;
+    if let Some(door) = door {
+        let vitals = Arc::clone(player.handle().vitals());
+        let health = Health::new(vitals, sight.shots.clone(), config.health.stall_ms.get());
+        net.spawn(door.serve(health));
+    }
     let serving = net.spawn(server.serve(player.handle()));
     let seen = match Display::open() {
         Ok(display) => show(display, &net, &cast, sight, look, &stop, None, None),
@@ -118,7 +126,7 @@ fn perform(
         }
     };
     let (first, first_shown) = oneshot::channel();
-    let start = flash.as_ref().map(|f| std::sync::Arc::clone(&f.start));
+    let start = flash.as_ref().map(|f| Arc::clone(&f.start));
     let windowed = display.is_some();
     let speaking = {
         let (handle, stop) = (player.handle(), stop.clone());
@@ -174,7 +182,7 @@ fn show(
         // Closed already: nothing to wake.
         let _ = proxy.send_event(Wake::Quit);
     });
-    display.show(std::sync::Arc::clone(&cast.head), sight, look, flash, shown)
+    display.show(Arc::clone(&cast.head), sight, look, flash, shown)
 }
 
 /// How the window is to look; reads the files that are named.

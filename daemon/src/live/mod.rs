@@ -10,7 +10,8 @@
 //!
 //! Between them: [`clock`] (which tick is heard now), [`frames`] (key frames, with epochs), bounded
 //! channels for commands, cues and answers, and a slot with the text on the screen ([`captions`]). [`player`] puts
-//! them together. [`vitals`] is what each says of itself, [`motion`] whether the face moves. [`speaker`] is what `say`
+//! them together. [`vitals`] is what each says of itself, [`motion`] whether the face moves, [`shots`] gives the picture on
+//! the screen to whoever asks. [`speaker`] is what `say`
 //! does without a daemon, [`client`] what it does with one; both take their utterance from [`source`].
 //! [`sync`] is a test of sound against picture, judged from outside. All time is [`time`]'s.
 
@@ -27,13 +28,14 @@ mod motion;
 mod player;
 mod score;
 mod server;
+pub mod shots;
 mod showing;
 mod sound;
 mod source;
 mod speaker;
 mod stop;
 mod sync;
-mod time;
+pub mod time;
 mod utterance;
 pub mod vitals;
 mod window;

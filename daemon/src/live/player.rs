@@ -17,6 +17,7 @@ use super::conductor::{COMMANDS_MAX, CUES_MAX, Command, Conductor, Ends};
 use super::face::Face;
 use super::frames::{FrameReader, key_frames};
 use super::score::Score;
+use super::shots::Shots;
 use super::showing::Showing;
 use super::sound::{Choice, Output};
 use super::time::{Origin, drive};
@@ -47,6 +48,8 @@ pub struct Sight {
     #[allow(dead_code, reason = "for the window that draws it")]
     /// The text that goes with what is heard.
     pub captions: Arc<Captions>,
+    /// Who wants to see the picture, too.
+    pub shots: Shots,
 }
 
 /// Sends utterances to the sound thread. Clones reach the same one.
@@ -125,6 +128,7 @@ impl Player {
             origin,
             vitals,
             captions,
+            shots: Shots::default(),
         };
         Ok((player, sight))
     }

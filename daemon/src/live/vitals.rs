@@ -2,9 +2,7 @@
 //!
 //! One struct of atomics for the whole process, shared by `Arc`. Each group belongs to one thread, and that thread
 //! alone writes it, so nothing waits for anything; whoever reads gets each figure as it was a moment
-//! ago, not all of one instant. Nothing is judged here: `health` does that.
-
-#![allow(dead_code, reason = "health, which reads it, comes next")]
+//! ago, not all of one instant. Nothing is judged here: [`health`](crate::health) does that.
 
 use std::sync::atomic::{AtomicI64, AtomicU64, Ordering};
 

@@ -311,6 +311,10 @@ impl App {
             Some(target) => target,
             None => self.target(&window)?,
         };
+        if let Some(answer) = self.sight.shots.asked() {
+            // Gone in between: nobody wants it.
+            target.shoot(|shot| drop(answer.send(shot)));
+        }
         window.pre_present_notify();
         let outcome = target.draw(&self.frame, &view)?;
         if outcome == Outcome::Shown && self.look.tier.is_none() {
