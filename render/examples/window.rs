@@ -70,7 +70,7 @@ impl ApplicationHandler for App {
                     target.gpu().device().destroy();
                 }
                 window.pre_present_notify();
-                let outcome = match target.draw(&self.frame, &View::default()) {
+                let outcome = match target.draw(&self.frame, &View::default(), None) {
                     Ok(outcome) => {
                         if outcome == Outcome::Hidden {
                             // Nothing paces a loop whose pictures are not shown.

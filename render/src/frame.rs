@@ -43,7 +43,7 @@ pub(crate) fn data(
     };
     let upright = view.placing.upright(size);
     let mut framing = extent.frame(view.camera, upright);
-    view.placing.place(&mut framing, upright);
+    view.placing.place(&mut framing, extent, upright);
     let studio = Studio::portrait(view.camera.yaw_rad(), &view.environment);
     let mut bodies = pose.bodies(&key_frame.state);
     gaze::converge(pose, &mut bodies);

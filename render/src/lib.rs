@@ -71,4 +71,4 @@ pub use shader::ShaderError;
 pub use shot::{Shot, SmallPicture};
 pub use tier::{Tier, UnknownTier};
 pub use view::{Background, Camera, Extent, Framing, Shown, UnknownCamera, View};
-pub use window::{Outcome, WindowError, WindowTarget};
+pub use window::{Outcome, Overlay, WindowError, WindowTarget};

@@ -5,9 +5,12 @@
 //! of a pixel move as smoothly as whole ones. Right, left, up and down are the picture's, not the
 //! screen's. The room's light knows nothing of it.
 
-use glam::{Mat4, Vec2, Vec4, vec2};
+use glam::{Mat4, Vec2, Vec4, vec2, vec3};
 
-use crate::view::Framing;
+use crate::view::{Extent, Framing};
+
+/// How far below the chin a bust is sure to be as wide as its shoulders.
+const SHOULDERS_MM: f32 = 60.0;
 
 /// The picture's place on the screen.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -54,10 +57,14 @@ impl Placing {
         [(1.0, 0.0), (0.0, 1.0), (-1.0, 0.0), (0.0, -1.0)][(self.quarters % 4) as usize]
     }
 
-    /// Puts `framing` of an upright picture of `upright` pixels in its place.
-    pub(crate) fn place(&self, framing: &mut Framing, upright: (u32, u32)) {
+    /// Puts `framing` of `extent` in an upright picture of `upright` pixels in its place.
+    pub(crate) fn place(&self, framing: &mut Framing, extent: &Extent, upright: (u32, u32)) {
         let pixels = vec2(upright.0.max(1) as f32, upright.1.max(1) as f32);
-        let moved = (self.shift + self.wander_px * vec2(1.0, -1.0) / pixels) * 2.0;
+        let mut moved = (self.shift + self.wander_px * vec2(1.0, -1.0) / pixels) * 2.0;
+        // A smaller head stands lower: its shoulders go on beyond the picture's foot, as in any portrait.
+        let lowest = vec3(0.0, extent.min.y - SHOULDERS_MM, extent.centre().z);
+        let lowest = framing.clip_from_world.project_point3(lowest).y.min(-1.0);
+        moved.y += (-1.0 - self.zoom * lowest).min(0.0);
         let (c, s) = self.turn();
         let zoomed = Mat4::from_cols(
             Vec4::X * self.zoom,
@@ -78,17 +85,19 @@ impl Placing {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::view::{Camera, Extent};
-    use glam::{Vec3, vec3};
+    use crate::view::Camera;
+    use glam::Vec3;
+
+    const EXTENT: Extent = Extent {
+        min: vec3(-90.0, -80.0, -90.0),
+        max: vec3(90.0, 145.0, 131.0),
+    };
 
     fn shown(placing: &Placing, size: (u32, u32), point: Vec3) -> Vec2 {
-        let extent = Extent {
-            min: vec3(-90.0, -80.0, -90.0),
-            max: vec3(90.0, 145.0, 131.0),
-        };
+        let extent = EXTENT;
         let upright = placing.upright(size);
         let mut framing = extent.frame(Camera::Front, upright);
-        placing.place(&mut framing, upright);
+        placing.place(&mut framing, &extent, upright);
         let clip = framing.clip_from_world.project_point3(point);
         vec2(0.5 + 0.5 * clip.x, 0.5 - 0.5 * clip.y) * vec2(size.0 as f32, size.1 as f32)
     }
@@ -108,6 +117,23 @@ mod tests {
         near(turned(1, (400, 300)), vec2(400.0 - upright.y, upright.x));
         near(turned(2, (300, 400)), vec2(300.0, 400.0) - upright);
         near(turned(3, (400, 300)), vec2(upright.y, 300.0 - upright.x));
+    }
+
+    #[test]
+    fn a_smaller_head_stands_on_the_picture_s_foot() {
+        let below = vec3(0.0, EXTENT.min.y - SHOULDERS_MM, EXTENT.centre().z);
+        for size in [(400, 300), (300, 400), (300, 900), (1600, 300)] {
+            let foot = size.1 as f32;
+            let as_it_was = shown(&Placing::default(), size, below).y;
+            for zoom in [0.5, 0.7, 0.9, 1.0] {
+                let placing = Placing {
+                    zoom,
+                    ..Placing::default()
+                };
+                let y = shown(&placing, size, below).y;
+                assert!(y >= foot.min(as_it_was) - 0.01, "{y} of {foot} at {zoom}");
+            }
+        }
     }
 
     #[test]

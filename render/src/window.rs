@@ -61,6 +61,19 @@ impl std::fmt::Debug for WindowTarget {
     }
 }
 
+/// Something drawn over the picture before it is shown.
+pub trait Overlay {
+    /// Writes its commands to `encoder`, for a target of [`WindowTarget::format`] that has `size` pixels and holds the
+    /// picture; gives back what must be done before them.
+    fn draw(
+        &mut self,
+        gpu: &Gpu,
+        encoder: &mut wgpu::CommandEncoder,
+        target: &wgpu::TextureView,
+        size: (u32, u32),
+    ) -> Vec<wgpu::CommandBuffer>;
+}
+
 /// Why a window cannot be drawn to.
 #[derive(Debug, thiserror::Error)]
 pub enum WindowError {
@@ -121,6 +134,12 @@ impl WindowTarget {
     #[must_use]
     pub fn gpu(&self) -> &Gpu {
         &self.gpu
+    }
+
+    /// The format of what is drawn to.
+    #[must_use]
+    pub fn format(&self) -> wgpu::TextureFormat {
+        self.config.format
     }
 
     /// The tier that is drawn in.
@@ -194,11 +213,16 @@ impl WindowTarget {
         self.surface.configure(self.gpu.device(), &self.config);
     }
 
-    /// Draws and shows one picture. With winit, call `pre_present_notify` before it.
+    /// Draws and shows one picture, with something over it or not. With winit, call `pre_present_notify` before it.
     ///
     /// # Errors
     /// When the frame is of another head, or the device is lost: then make a new `WindowTarget`.
-    pub fn draw(&mut self, key_frame: &KeyFrame, view: &View) -> Result<Outcome, WindowError> {
+    pub fn draw(
+        &mut self,
+        key_frame: &KeyFrame,
+        view: &View,
+        over: Option<&mut dyn Overlay>,
+    ) -> Result<Outcome, WindowError> {
         use wgpu::CurrentSurfaceTexture as Acquired;
         // A lost device says so only when asked; its surface would have us try again for ever.
         let _ = self.gpu.device().poll(wgpu::PollType::Poll);
@@ -231,9 +255,12 @@ impl WindowTarget {
             .texture
             .create_view(&wgpu::TextureViewDescriptor::default());
         let size = (texture.texture.width(), texture.texture.height());
-        let submission = self
+        let mut submission = self
             .renderer
             .draw(&self.gpu, key_frame, view, &target, size)?;
+        if let Some(over) = over {
+            submission = self.draw_over(over, &target, size);
+        }
         if let Some(take) = self.take.take() {
             let (device, queue) = (self.gpu.device(), self.gpu.queue());
             Shot::request(device, queue, &texture.texture, take);
@@ -254,6 +281,22 @@ impl WindowTarget {
             self.surface.configure(self.gpu.device(), &self.config);
         }
         Ok(Outcome::Shown)
+    }
+}
+
+impl WindowTarget {
+    fn draw_over(
+        &self,
+        over: &mut dyn Overlay,
+        target: &wgpu::TextureView,
+        size: (u32, u32),
+    ) -> wgpu::SubmissionIndex {
+        let label = Some("overlay");
+        let device = self.gpu.device();
+        let mut encoder = device.create_command_encoder(&wgpu::CommandEncoderDescriptor { label });
+        let first = over.draw(&self.gpu, &mut encoder, target, size);
+        let commands = first.into_iter().chain([encoder.finish()]);
+        self.gpu.queue().submit(commands)
     }
 }
 

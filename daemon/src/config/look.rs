@@ -28,8 +28,8 @@ section! {
         environment: Option<PathBuf> = None,
         /// How the skin reflects light: "physical" or "blinn-phong".
         skin: SkinArg = SkinArg::Physical,
-        /// Size of the head in the picture: 100 fills it, 60 shows neck and shoulders, 140 comes closer.
-        framing_percent: Whole<30, 200> = Whole::new(100),
+        /// Size of the head in the picture: 100 fills it, 60 leaves room above and shows the shoulders, 140 comes closer.
+        framing_percent: Whole<50, 200> = Whole::new(100),
         /// Moves the head to the right (below 0: to the left), hundredths of the picture's width.
         across_percent: Whole<-50, 50> = Whole::new(0),
         /// Moves the head up (below 0: down), hundredths of the picture's height.

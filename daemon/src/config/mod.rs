@@ -2,17 +2,20 @@
 //!
 //! | module | holds |
 //! |---|---|
-//! | `window`, `look`, `sound`, `life`, `wire`, `health`, `log` | one section each: keys, types, defaults, documentation |
+//! | `window`, `look`, `captions`, `sound`, `life`, `wire`, `health`, `log` | one section each: keys, types, defaults, documentation |
 //! | `section` | how a section is declared |
 //! | `value` | values with bounds or a syntax of their own |
 //! | `file` | finding and reading the file; what is wrong with it |
 //! | `source` | flag over file over default |
+//! | `change` | what differs between two |
 //! | `print` | the whole of it as TOML with its documentation |
 //! | `command` | `mouthpiece config check` and `print` |
 //!
 //! To add a key, add it to its section: reading, printing and checking follow. To add a section,
 //! add its file and name it in [`Config`] and in [`Config::sections`].
 
+mod captions;
+mod change;
 mod command;
 mod file;
 mod health;
@@ -31,6 +34,8 @@ mod wire;
 
 use serde::{Deserialize, Serialize};
 
+pub use captions::{CaptionStyle, Captions};
+pub use change::Changed;
 pub use command::run;
 pub use health::Health;
 pub use life::Life;
@@ -49,6 +54,7 @@ use section::{Key, Section};
 pub struct Config {
     pub window: Window,
     pub look: Look,
+    pub captions: Captions,
     pub sound: Sound,
     pub life: Life,
     pub wire: Wire,
@@ -61,13 +67,14 @@ type About = (&'static str, &'static [&'static str], &'static [Key]);
 
 impl Config {
     /// The sections, in the order in which they are printed.
-    fn sections() -> [About; 7] {
+    fn sections() -> [About; 8] {
         fn about<S: Section>(name: &'static str, _: fn(Config) -> S) -> About {
             (name, S::ABOUT, S::KEYS)
         }
         [
             about("window", |c| c.window),
             about("look", |c| c.look),
+            about("captions", |c| c.captions),
             about("sound", |c| c.sound),
             about("life", |c| c.life),
             about("wire", |c| c.wire),

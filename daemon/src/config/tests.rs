@@ -111,6 +111,18 @@ fn a_wrong_file_is_refused_with_line_key_and_mend() {
 }
 
 #[test]
+fn what_has_changed_is_named_and_whether_it_is_felt_at_once() {
+    let new = "[window]\nfullscreen = true\n[look]\nenvironment = \"a.hdr\"\n[life]\nseed = 1";
+    let new = file::parse(new, "x").unwrap();
+    let changed = Config::default().differs_in(&new);
+    let changed: Vec<_> = changed.iter().map(|c| (&*c.name, c.at_start)).collect();
+    assert_eq!(
+        changed,
+        [("window.fullscreen", true), ("look.environment", false)]
+    );
+}
+
+#[test]
 fn files_are_found_from_the_file_s_own_folder_on() {
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("kiosk.toml");

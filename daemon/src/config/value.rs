@@ -8,6 +8,7 @@ use clap::ValueEnum;
 use serde::de::Error as _;
 use serde::{Deserialize, Deserializer, Serialize, Serializer};
 
+use super::captions::CaptionStyle;
 use super::log::Level;
 use crate::cli::{BackgroundArg, LiveTierArg, Size, SkinArg, StateArg, TissueArg};
 use crate::health::Door;
@@ -153,4 +154,11 @@ macro_rules! as_word {
 }
 
 as_text!(Size, BackgroundArg, Door);
-as_word!(Level, LiveTierArg, SkinArg, StateArg, TissueArg);
+as_word!(
+    CaptionStyle,
+    Level,
+    LiveTierArg,
+    SkinArg,
+    StateArg,
+    TissueArg
+);

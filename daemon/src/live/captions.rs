@@ -28,7 +28,6 @@ impl Captions {
         self.version.fetch_add(1, Ordering::Release);
     }
 
-    #[allow(dead_code, reason = "for the window that draws it")]
     /// The text when it is another than the one whose number is in `seen`, which starts at 0 with no text.
     pub fn latest(&self, seen: &mut u64) -> Option<Arc<str>> {
         let version = self.version.load(Ordering::Acquire);

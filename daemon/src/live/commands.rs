@@ -4,13 +4,18 @@ use std::sync::Arc;
 use std::time::Duration;
 
 use anyhow::{Result, bail};
+use arc_swap::ArcSwap;
 use tokio::runtime::Runtime;
 use tokio::sync::oneshot;
+use tokio::task::JoinHandle;
 
 use super::address::Address;
 use super::client;
-use super::player::{Player, Sight};
+use super::deadline;
+use super::player::{Handle, Player, Sight};
+use super::reload::{Current, Reload};
 use super::server::Server;
+use super::service;
 use super::sound::Choice;
 use super::source::Source;
 use super::speaker;
@@ -29,8 +34,8 @@ const CLOSE_PATIENCE: Duration = Duration::from_millis(300);
 /// The daemon.
 pub fn run(args: &RunArgs) -> Result<()> {
     let stop = Stop::default();
-    let net = runtime(&stop)?;
     let source = config::Source::new(&args.stage, args.listen.as_deref()).with_http(args.http);
+    let net = runtime(&stop, source.file().is_none())?;
     let config = source.load()?;
     if let Some(file) = source.file() {
         tracing::info!(file = %file.display(), "configured");
@@ -39,36 +44,69 @@ pub fn run(args: &RunArgs) -> Result<()> {
         Some(text) => Address::parse(text)?,
         None => Address::user_default()?,
     };
-    let look = look(&config)?;
+    let look = Look::load(&config)?;
     // First, so that a second daemon ends before it has cost anything.
     let server = net.block_on(Server::bind(&address))?;
     let door = net.block_on(config.health.http.open(None))?;
+    net.spawn(ended_in_time(stop.clone(), address));
     let cast = cast(&config)?;
     let (player, sight) = start(&cast, &config)?;
+    net.spawn(service::tell(Arc::clone(&sight.vitals), stop.clone()));
     if let Some(door) = door {
         let vitals = Arc::clone(player.handle().vitals());
         let health = Health::new(vitals, sight.shots.clone(), config.health.stall_ms.get());
         net.spawn(door.serve(health));
     }
     let serving = net.spawn(server.serve(player.handle()));
+    let reload = |window| Reload {
+        source,
+        current: Current::new(ArcSwap::from_pointee(config)),
+        player: player.handle(),
+        window,
+    };
     let seen = match Display::open() {
-        Ok(display) => show(display, &net, &cast, sight, look, &stop, None, None),
-        Err(error) => Err(error),
+        Ok(display) => {
+            net.spawn(reload(Some(display.proxy())).watch(stop.clone()));
+            show(display, &net, &cast, sight, look, &stop, None, None)
+        }
+        Err(error) => {
+            net.spawn(reload(None).watch(stop.clone()));
+            Err(error)
+        }
     };
     if let Err(error) = seen {
         tracing::warn!("{error:#}; going on without a window");
         net.block_on(stop.wait());
     }
     stop.ask();
-    serving.abort();
+    net.block_on(goodbye(&player.handle(), serving));
     net.shutdown_timeout(CLOSE_PATIENCE);
     player.end()
+}
+
+/// Stops what is spoken and tells who sent it, as long as that takes no longer than it should.
+async fn goodbye(player: &Handle, serving: JoinHandle<()>) {
+    player.closing().cancel();
+    player.stop(None).await;
+    let serving = tokio::time::timeout(CLOSE_PATIENCE, serving);
+    if serving.await.is_err() {
+        tracing::debug!("clients that do not read were not told of the end");
+    }
+}
+
+/// Once the end is asked for, it comes.
+async fn ended_in_time(stop: Stop, address: Address) {
+    stop.wait().await;
+    deadline::arm(match address {
+        Address::Unix(path) => Some(path),
+        Address::Loopback(_) => None,
+    });
 }
 
 /// One utterance: through the daemon where there is one, else in a window of its own.
 pub fn say(args: &SayArgs) -> Result<()> {
     let stop = Stop::default();
-    let net = runtime(&stop)?;
+    let net = runtime(&stop, true)?;
     let config = config::Source::new(&args.stage, args.listen.as_deref()).load()?;
     let address = match &config.wire.listen {
         Some(text) => Some(Address::parse(text)?),
@@ -95,7 +133,7 @@ pub fn say(args: &SayArgs) -> Result<()> {
 /// Clicks with flashes for `seconds`, for a recorder outside to judge.
 pub fn sync_test(stage: &StageArgs, seconds: u32) -> Result<()> {
     let stop = Stop::default();
-    let net = runtime(&stop)?;
+    let net = runtime(&stop, true)?;
     let config = config::Source::new(stage, None).load()?;
     let (source, flash) = sync::clicks(seconds)?;
     perform(source, &config, Some(flash), &net, &stop)
@@ -109,7 +147,7 @@ fn perform(
     net: &Runtime,
     stop: &Stop,
 ) -> Result<()> {
-    let look = look(config)?;
+    let look = Look::load(config)?;
     let cast = cast(config)?;
     let (player, sight) = start(&cast, config)?;
     let display = match Display::open() {
@@ -185,19 +223,6 @@ fn show(
     display.show(Arc::clone(&cast.head), sight, look, flash, shown)
 }
 
-/// How the window is to look; reads the files that are named.
-fn look(config: &Config) -> Result<Look> {
-    let size = config.window.size;
-    let mut view = config.look.view()?;
-    view.placing.quarters = config.window.rotate.quarters();
-    Ok(Look {
-        size: (size.width, size.height),
-        fullscreen: config.window.fullscreen,
-        tier: config.look.tier.fixed(),
-        view,
-    })
-}
-
 fn cast(config: &Config) -> Result<Cast> {
     Cast::load(&CastArgs {
         head: config.look.head.clone(),
@@ -212,16 +237,16 @@ fn start(cast: &Cast, config: &Config) -> Result<(Player, Sight)> {
         id => Choice::Id(id.to_owned()),
     };
     let look_ahead_ms = u16::try_from(config.sound.look_ahead_ms.get())?;
-    Player::start(cast, choice, config.life.seed, look_ahead_ms)
+    Player::start(cast, choice, &config.life, look_ahead_ms)
 }
 
-/// Sockets and control, on one thread: nothing real-time runs there.
-fn runtime(stop: &Stop) -> Result<Runtime> {
+/// Sockets and control, on one thread: nothing real-time runs there. Whether SIGHUP `hangs_up`, that is, ends the process.
+fn runtime(stop: &Stop, hangs_up: bool) -> Result<Runtime> {
     let net = tokio::runtime::Builder::new_multi_thread()
         .worker_threads(1)
         .thread_name("net")
         .enable_all()
         .build()?;
-    net.spawn(stop.clone().on_signals());
+    net.spawn(stop.clone().on_signals(hangs_up));
     Ok(net)
 }

@@ -47,6 +47,7 @@ pub async fn serve((mut read, write): Stream, handle: Handle, limits: Limits) {
     let mut bytes = vec![0; READ_BYTES];
     let mut actions = Vec::new();
     let mut sending = true;
+    let closing = client.handle.closing().clone();
     while sending || client.session.has_pending() {
         let alive = tokio::select! {
             got = read.read(&mut bytes), if sending => {
@@ -60,6 +61,12 @@ pub async fn serve((mut read, write): Stream, handle: Handle, limits: Limits) {
                 client.act(&mut actions).await
             }
             Some(message) = told.recv() => client.answer(message).await,
+            // What it began is being stopped: it hears of that, and no more of it is listened to.
+            () = closing.cancelled(), if sending => {
+                sending = false;
+                client.session.closed(&mut actions);
+                client.act(&mut actions).await
+            }
         };
         if let Err(error) = alive {
             tracing::debug!(%error, "a client is gone");

@@ -13,7 +13,8 @@
 //! them together. [`vitals`] is what each says of itself, [`motion`] whether the face moves, [`shots`] gives the picture on
 //! the screen to whoever asks. [`speaker`] is what `say`
 //! does without a daemon, [`client`] what it does with one; both take their utterance from [`source`].
-//! [`sync`] is a test of sound against picture, judged from outside. All time is [`time`]'s.
+//! [`reload`] takes a changed configuration over, [`service`] tells systemd,
+//! [`deadline`] ends what does not end. [`sync`] is a test of sound against picture, judged from outside. All time is [`time`]'s.
 
 mod address;
 mod captions;
@@ -22,12 +23,15 @@ mod clock;
 mod commands;
 mod conductor;
 mod connection;
+mod deadline;
 mod face;
 mod frames;
 mod motion;
 mod player;
+mod reload;
 mod score;
 mod server;
+mod service;
 pub mod shots;
 mod showing;
 mod sound;

@@ -10,6 +10,7 @@ use mouthpiece_protocol::ErrorCode;
 use mouthpiece_rig::{Simulation, TICK_RATE};
 use mouthpiece_speech::Idle;
 use tokio::sync::mpsc;
+use tokio_util::sync::CancellationToken;
 
 use super::captions::Captions;
 use super::clock::{AudibleClock, ClockCell};
@@ -23,6 +24,7 @@ use super::sound::{Choice, Output};
 use super::time::{Origin, drive};
 use super::utterance::Begin;
 use super::vitals::Vitals;
+use crate::config;
 use crate::pipeline::Cast;
 
 /// The head is settled by this much motion before anything is shown.
@@ -45,7 +47,6 @@ pub struct Sight {
     pub origin: Origin,
     /// Where the window says how it is.
     pub vitals: Arc<Vitals>,
-    #[allow(dead_code, reason = "for the window that draws it")]
     /// The text that goes with what is heard.
     pub captions: Arc<Captions>,
     /// Who wants to see the picture, too.
@@ -58,15 +59,16 @@ pub struct Handle {
     commands: mpsc::Sender<Command>,
     keys: Arc<AtomicU64>,
     vitals: Arc<Vitals>,
+    closing: CancellationToken,
 }
 
 impl Player {
-    /// Starts both threads. `seed` is the idle life's, `look_ahead_ms` how much of an utterance that is still
+    /// Starts both threads. `life` is what the face does by itself, `look_ahead_ms` how much of an utterance that is still
     /// coming in must be there before it begins.
     pub fn start(
         cast: &Cast,
         choice: Choice,
-        seed: u64,
+        life: &config::Life,
         look_ahead_ms: u16,
     ) -> Result<(Self, Sight)> {
         let origin = Origin::new();
@@ -77,7 +79,12 @@ impl Player {
         let (writer, frames) = key_frames();
 
         let calibration = cast.head.calibration.clone();
-        let score = Score::new(&cast.speech, calibration, Idle::new(seed));
+        let score = Score::new(
+            &cast.speech,
+            calibration,
+            Idle::new(life.seed),
+            life.state.into(),
+        );
         let clock = AudibleClock::new(Arc::clone(&cell));
         let mut body = Simulation::new(Arc::clone(&cast.head));
         let face_vitals = Arc::clone(&vitals);
@@ -118,6 +125,7 @@ impl Player {
                 commands,
                 keys: Arc::default(),
                 vitals: Arc::clone(&vitals),
+                closing: CancellationToken::new(),
             },
             threads: vec![sound, simulation],
             has_sound: has_sound.recv().unwrap_or(false),
@@ -204,6 +212,11 @@ impl Handle {
     /// A text for the screen: from tick `start` of an utterance's sound on, or at once.
     pub async fn caption(&self, key: Option<u64>, start: i64, text: String) {
         self.send(Command::Caption(key, start, text.into())).await;
+    }
+
+    /// Done when the process is ending: nothing more is begun, and what was begun has been stopped.
+    pub fn closing(&self) -> &CancellationToken {
+        &self.closing
     }
 
     /// Waits while the sound thread has enough to do. Without that thread there is nobody to tell:

@@ -42,6 +42,8 @@ pub struct Score {
     /// How this mouth answers: expressions keep off lips that must close.
     calibration: Calibration,
     idle: Idle,
+    /// What the face does while nobody speaks and nobody has just spoken.
+    resting: State,
     states: States,
     shown: Shown,
     /// What was shown already and is not so any more.
@@ -49,13 +51,14 @@ pub struct Score {
 }
 
 impl Score {
-    pub fn new(speech: &Speech, calibration: Calibration, idle: Idle) -> Self {
+    pub fn new(speech: &Speech, calibration: Calibration, idle: Idle, resting: State) -> Self {
         Self {
             spoken: Vec::new(),
             rest: speech.track(&[]).controls_at(0),
             calibration,
             idle,
-            states: States::default(),
+            resting,
+            states: States::always(resting),
             shown: Shown::default(),
             correction: Correction::default(),
         }
@@ -78,6 +81,10 @@ impl Score {
                     Showing::Face { controls, fade } => self.shown.face(audible, *controls, fade),
                     Showing::Look { at, fade } => self.shown.look(audible, at, fade),
                     Showing::State(state) => self.states.change(audible, state),
+                    Showing::Rest(state) => {
+                        self.resting = state;
+                        self.states.change(audible, state);
+                    }
                 }
                 audible
             }
@@ -136,7 +143,7 @@ impl Score {
     fn listen_from(&mut self, tick: i64) {
         self.states.change(tick, State::Listening);
         self.states
-            .change(tick.saturating_add(LISTENING_TICKS), State::Idle);
+            .change(tick.saturating_add(LISTENING_TICKS), self.resting);
     }
 
     /// What the head is told at `tick`.
@@ -235,7 +242,7 @@ mod tests {
     #[test]
     fn an_utterance_is_felt_at_its_place_and_nowhere_else() {
         let speech = speech();
-        let mut score = Score::new(&speech, Calibration::default(), Idle::new(1));
+        let mut score = Score::new(&speech, Calibration::default(), Idle::new(1), State::Idle);
         let rest = jaw(&score, 0);
         let felt = score.take(
             Cue::Start {
@@ -257,7 +264,7 @@ mod tests {
     #[test]
     fn a_stopped_mouth_goes_to_rest_without_a_jump() {
         let speech = speech();
-        let mut score = Score::new(&speech, Calibration::default(), Idle::new(1));
+        let mut score = Score::new(&speech, Calibration::default(), Idle::new(1), State::Idle);
         let rest = jaw(&score, 0);
         score.take(
             Cue::Start {
@@ -282,7 +289,7 @@ mod tests {
     #[test]
     fn an_expression_over_speech_leaves_the_lips_to_speech_and_the_brows_to_itself() {
         let speech = speech();
-        let mut score = Score::new(&speech, Calibration::default(), Idle::new(1));
+        let mut score = Score::new(&speech, Calibration::default(), Idle::new(1), State::Idle);
         // The calibration of a mouth that no muscle opens: its lips always have to meet.
         let mut face = Controls::default();
         face[Control::LevatorLabiiSuperioris] = 0.8;
@@ -311,7 +318,7 @@ mod tests {
     #[test]
     fn an_utterance_that_is_cut_off_leaves_the_mouth_at_rest() {
         let speech = speech();
-        let mut score = Score::new(&speech, Calibration::default(), Idle::new(1));
+        let mut score = Score::new(&speech, Calibration::default(), Idle::new(1), State::Idle);
         let rest = jaw(&score, 0);
         // Its client died in the middle of a vowel: no silence follows.
         let track = Box::new(speech.track(&open_vowel()[..2]));

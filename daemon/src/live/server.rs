@@ -10,6 +10,7 @@ use mouthpiece_protocol::{DaemonMessage, ErrorCode, Limits};
 use tokio::io::AsyncWriteExt as _;
 use tokio::net::{TcpListener, UnixListener};
 use tokio::sync::Semaphore;
+use tokio_util::task::TaskTracker;
 
 use super::address::Address;
 use super::connection::{self, Stream};
@@ -71,20 +72,12 @@ impl Server {
         })
     }
 
-    /// Serves clients for ever.
+    /// Serves clients until the process ends and they have heard of it.
     pub async fn serve(self, handle: Handle) {
         let room = Arc::new(Semaphore::new(CLIENTS_MAX));
-        loop {
-            let accepted = match &self.listener {
-                Listener::Unix(listener) => listener.accept().await.map(|(s, _)| {
-                    let (r, w) = s.into_split();
-                    (Box::new(r) as _, Box::new(w) as _)
-                }),
-                Listener::Tcp(listener) => listener.accept().await.map(|(s, _)| {
-                    let (r, w) = s.into_split();
-                    (Box::new(r) as _, Box::new(w) as _)
-                }),
-            };
+        let served = TaskTracker::new();
+        let closing = handle.closing().clone();
+        while let Some(accepted) = closing.run_until_cancelled(self.accept()).await {
             let stream: Stream = match accepted {
                 Ok(stream) => stream,
                 Err(error) => {
@@ -97,7 +90,7 @@ impl Server {
             match Arc::clone(&room).try_acquire_owned() {
                 Ok(permit) => {
                     let (handle, limits) = (handle.clone(), self.limits.clone());
-                    tokio::spawn(async move {
+                    served.spawn(async move {
                         let net = &Arc::clone(handle.vitals()).net;
                         net.connected.add(1);
                         net.clients.add(1);
@@ -111,6 +104,23 @@ impl Server {
                     turn_away(stream).await;
                 }
             }
+        }
+        // Nobody is to find a socket that is not listened at.
+        drop(self);
+        served.close();
+        served.wait().await;
+    }
+
+    async fn accept(&self) -> std::io::Result<Stream> {
+        match &self.listener {
+            Listener::Unix(listener) => listener.accept().await.map(|(s, _)| {
+                let (r, w) = s.into_split();
+                (Box::new(r) as _, Box::new(w) as _)
+            }),
+            Listener::Tcp(listener) => listener.accept().await.map(|(s, _)| {
+                let (r, w) = s.into_split();
+                (Box::new(r) as _, Box::new(w) as _)
+            }),
         }
     }
 }

@@ -17,6 +17,8 @@ pub enum Showing {
     Look { at: Option<Direction>, fade: i64 },
     /// What it does while it says nothing.
     State(State),
+    /// The same, and what it goes back to some time after it has spoken.
+    Rest(State),
 }
 
 /// Relative to where a head at rest looks, radians.

@@ -28,8 +28,9 @@ impl Stop {
         self.token.cancelled().await;
     }
 
-    /// Asks for the end when a signal comes; a second signal ends the process at once. Runs until then.
-    pub async fn on_signals(self) {
+    /// Asks for the end when a signal comes; a second signal ends the process at once. Runs until then. SIGHUP is one
+    /// of them where it `hangs_up`; else somebody else listens for it.
+    pub async fn on_signals(self, hangs_up: bool) {
         use tokio::signal::unix::{SignalKind, signal};
         let kinds = [
             SignalKind::interrupt(),
@@ -44,7 +45,7 @@ impl Stop {
             tokio::select! {
                 _ = a.recv() => {}
                 _ = b.recv() => {}
-                _ = c.recv() => {}
+                _ = c.recv() => if !hangs_up { continue },
             }
             if self.by_signal.swap(true, Ordering::AcqRel) {
                 std::process::exit(i32::from(crate::interrupt::STATUS));

@@ -11,28 +11,36 @@
 use std::sync::Arc;
 
 use anyhow::{Context as _, Result, anyhow, bail};
-use mouthpiece_render::{Governor, Outcome, Tier, View, WindowTarget};
+use mouthpiece_render::{Governor, Outcome, Overlay, Tier, WindowTarget};
 use mouthpiece_rig::{Head, KeyFrame};
 use tokio::sync::oneshot;
 use winit::application::ApplicationHandler;
-use winit::dpi::{PhysicalPosition, PhysicalSize};
 use winit::event::{ElementState, StartCause, WindowEvent};
 use winit::event_loop::{ActiveEventLoop, ControlFlow, EventLoop, EventLoopProxy};
 use winit::keyboard::{Key, NamedKey};
 use winit::monitor::MonitorHandle;
-use winit::window::{Fullscreen, Window, WindowId};
+use winit::window::{Window, WindowId};
 
 use super::motion::Motion;
 use super::player::Sight;
 use super::sync::Flash;
 use super::time::{ns_from_ticks, ticks_from_ns};
+use crate::config::CaptionStyle;
 
+mod awake;
+mod caption;
+mod cursor;
+mod look;
+mod open;
 mod pace;
+mod wander;
 
+use awake::Awake;
+use caption::{Painter, Words};
+use cursor::Cursor;
+pub use look::Look;
 use pace::Pace;
 
-/// The window's title.
-const TITLE: &str = "Mouthpiece";
 /// How long a covered window rests, and one whose card failed.
 const HIDDEN_NS: i64 = 100_000_000;
 const FAILED_NS: i64 = 1_000_000_000;
@@ -40,20 +48,12 @@ const FAILED_NS: i64 = 1_000_000_000;
 const FAILURES_MAX: u32 = 5;
 
 /// What other threads tell the event loop.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Debug)]
 pub enum Wake {
     /// The process is to end.
     Quit,
-}
-
-/// How the window looks.
-#[derive(Clone, Debug)]
-pub struct Look {
-    pub size: (u32, u32),
-    pub fullscreen: bool,
-    /// None: the best that keeps pace, found while it runs.
-    pub tier: Option<Tier>,
-    pub view: View,
+    /// From the next picture on it looks like this.
+    Look(Box<Look>),
 }
 
 /// A connection to the display.
@@ -100,9 +100,12 @@ impl Display {
             heard: 0,
             last_tick: i64::MIN,
             motion: Motion::default(),
+            text: Arc::from(""),
+            text_seen: 0,
             open: None,
             pace: Pace::default(),
             governor: Governor::default(),
+            tier: None,
             failures: 0,
             error: None,
         };
@@ -125,9 +128,14 @@ struct App {
     heard: i64,
     last_tick: i64,
     motion: Motion,
+    /// The text that goes with what is heard, and its number.
+    text: Arc<str>,
+    text_seen: u64,
     open: Option<Open>,
     pace: Pace,
     governor: Governor,
+    /// A tier that was asked for while it lived, and is not in the making yet.
+    tier: Option<Tier>,
     failures: u32,
     error: Option<anyhow::Error>,
 }
@@ -135,7 +143,11 @@ struct App {
 struct Open {
     // Dropped before the window.
     target: Option<WindowTarget>,
+    /// Of that target, once there was something to write.
+    painter: Option<Painter>,
     window: Arc<Window>,
+    cursor: Cursor,
+    awake: Option<Awake>,
 }
 
 impl ApplicationHandler<Wake> for App {
@@ -161,6 +173,7 @@ impl ApplicationHandler<Wake> for App {
     fn user_event(&mut self, events: &ActiveEventLoop, wake: Wake) {
         match wake {
             Wake::Quit => events.exit(),
+            Wake::Look(look) => self.look(*look),
         }
     }
 
@@ -176,6 +189,14 @@ impl ApplicationHandler<Wake> for App {
             WindowEvent::Resized(size) => {
                 if let Some(target) = self.open.as_mut().and_then(|o| o.target.as_mut()) {
                     target.resize((size.width, size.height));
+                }
+            }
+            WindowEvent::CursorMoved { .. } => {
+                let now_ns = self.sight.origin.now_ns();
+                if let Some(open) = &mut self.open
+                    && let Some(visible) = open.cursor.moved(now_ns)
+                {
+                    open.window.set_cursor_visible(visible);
                 }
             }
             WindowEvent::RedrawRequested => self.draw(events),
@@ -201,41 +222,42 @@ impl ApplicationHandler<Wake> for App {
 
 impl App {
     fn open_window(&mut self, events: &ActiveEventLoop) -> Result<Open> {
-        let mut attributes = Window::default_attributes()
-            .with_title(TITLE)
-            .with_inner_size(PhysicalSize::new(self.look.size.0, self.look.size.1));
-        let monitor = events
-            .primary_monitor()
-            .or_else(|| events.available_monitors().next());
-        if let Some(millihertz) = monitor
+        let wanted = &self.look.window;
+        let monitor = open::monitor(events, &wanted.monitor);
+        let refresh = monitor
             .as_ref()
-            .and_then(MonitorHandle::refresh_rate_millihertz)
-        {
+            .and_then(MonitorHandle::refresh_rate_millihertz);
+        if let Some(millihertz) = refresh {
             self.pace.set_refresh(millihertz);
         }
-        if self.look.fullscreen {
-            attributes = attributes
-                .with_decorations(false)
-                .with_fullscreen(Some(Fullscreen::Borderless(None)));
-            // Without a window manager nobody makes the window as large as asked for.
-            if let Some(monitor) = &monitor {
-                attributes = attributes
-                    .with_inner_size(monitor.size())
-                    .with_position(PhysicalPosition::new(0, 0));
-            }
-        }
-        let window = events
-            .create_window(attributes)
-            .context("no window could be opened")?;
-        let window = Arc::new(window);
-        if self.look.fullscreen {
-            window.set_cursor_visible(false);
-        }
+        let window = open::window(events, wanted, monitor.as_ref())?;
+        let awake = (wanted.fullscreen && wanted.keep_awake)
+            .then(Awake::new)
+            .flatten();
         let target = self.target(&window)?;
         Ok(Open {
             target: Some(target),
+            painter: None,
+            cursor: Cursor::new(self.sight.origin.now_ns()),
+            awake,
             window,
         })
+    }
+
+    /// Takes over what has changed in the configuration.
+    fn look(&mut self, look: Look) {
+        let look = look.keeping(&self.look);
+        if look.tier != self.look.tier {
+            self.tier = look.tier;
+        }
+        if let Some(open) = &mut self.open {
+            let wanted = look.window.fullscreen && look.window.keep_awake;
+            open.awake = match open.awake.take() {
+                Some(awake) => wanted.then_some(awake),
+                None => wanted.then(Awake::new).flatten(),
+            };
+        }
+        self.look = look;
     }
 
     fn target(&mut self, window: &Arc<Window>) -> Result<WindowTarget> {
@@ -270,7 +292,7 @@ impl App {
                 }
                 tracing::warn!("{error:#}; the window is set up again");
                 if let Some(open) = &mut self.open {
-                    open.target = None;
+                    (open.target, open.painter) = (None, None);
                 }
                 self.pace.rest(now_ns, FAILED_NS);
             }
@@ -280,7 +302,7 @@ impl App {
     /// A picture that was begun at `begun_ns` is on its way to the screen.
     fn shown(&mut self, begun_ns: i64, now_ns: i64) {
         let seen_ns = now_ns - begun_ns + self.pace.interval_ns() / 2;
-        let skew_ns = seen_ns - ns_from_ticks(self.last_tick - self.heard);
+        let skew_ns = seen_ns - ns_from_ticks(self.last_tick + self.look.delay - self.heard);
         self.pace.shown(begun_ns, now_ns);
         let moved = self.motion.differs(&self.frame);
         let vitals = &self.sight.vitals.window;
@@ -293,7 +315,7 @@ impl App {
     /// Draws the picture that can be seen soonest.
     fn picture(&mut self, now_ns: i64) -> Result<Outcome> {
         self.heard = self.sight.clock.at(now_ns);
-        let tick = self.heard + ticks_from_ns(self.pace.ahead_ns());
+        let tick = self.heard + ticks_from_ns(self.pace.ahead_ns()) - self.look.delay;
         self.last_tick = self.last_tick.max(tick);
         if !self.sight.frames.sample(self.last_tick, &mut self.frame) {
             return Ok(Outcome::Retry); // the simulation has not begun
@@ -303,6 +325,9 @@ impl App {
             .flash
             .as_ref()
             .is_some_and(|f| f.is_lit(self.last_tick));
+        let wander = wander::at(now_ns, view.placing.wander_max_px);
+        view.placing.wander_px = wander;
+        let words = self.words(wander);
         let Some(open) = &self.open else {
             return Ok(Outcome::Hidden);
         };
@@ -315,8 +340,28 @@ impl App {
             // Gone in between: nobody wants it.
             target.shoot(|shot| drop(answer.send(shot)));
         }
+        let Some(open) = &mut self.open else {
+            return Ok(Outcome::Hidden);
+        };
+        let mut over = words.map(|words| {
+            let fresh = || Painter::new(target.gpu(), target.format());
+            open.painter.get_or_insert_with(fresh).over(words)
+        });
+        let over = over.as_mut().map(|over| over as &mut dyn Overlay);
         window.pre_present_notify();
-        let outcome = target.draw(&self.frame, &view)?;
+        let outcome = target.draw(&self.frame, &view, over)?;
+        let idle_s = self.look.window.hide_cursor_after_s.get();
+        if self.look.window.fullscreen
+            && let Some(visible) = open.cursor.rest(now_ns, idle_s)
+        {
+            window.set_cursor_visible(visible);
+        }
+        if let Some(tier) = self.tier
+            && !target.is_preparing()
+        {
+            target.prepare(&self.head, tier);
+            self.tier = None;
+        }
         if outcome == Outcome::Shown && self.look.tier.is_none() {
             self.govern(&mut target);
         }
@@ -324,6 +369,23 @@ impl App {
             open.target = Some(target);
         }
         Ok(outcome)
+    }
+
+    /// What is to be read in the picture.
+    fn words(&mut self, wander: glam::Vec2) -> Option<Words> {
+        if let Some(text) = self.sight.captions.latest(&mut self.text_seen) {
+            self.text = text;
+        }
+        if self.look.captions.style == CaptionStyle::Off {
+            return None;
+        }
+        let wander = wander.round().as_ivec2();
+        Some(Words {
+            text: (!self.text.is_empty()).then(|| Arc::clone(&self.text))?,
+            captions: self.look.captions.clone(),
+            quarters: self.look.view.placing.quarters,
+            wander: (wander.x, wander.y),
+        })
     }
 
     /// Goes to another tier where the picture just drawn says so.

@@ -67,7 +67,12 @@ fn stage() -> Stage {
         jaw: 0.0,
         steps: 0,
     };
-    let score = Score::new(&speech, Calibration::default(), Idle::new(7));
+    let score = Score::new(
+        &speech,
+        Calibration::default(),
+        Idle::new(7),
+        mouthpiece_speech::State::Idle,
+    );
     let clock = AudibleClock::new(Arc::clone(&cell));
     Stage {
         face: Face::new(

@@ -1,0 +1,24 @@
+//! `[captions]`: the words under the face.
+
+use clap::ValueEnum;
+
+use super::section::section;
+use super::value::Whole;
+
+section! {
+    /// The words under the face, where clients send them (`caption`).
+    pub struct Captions {
+        /// How they are shown: "off", on a dark "box", or white with a dark "outline".
+        style: CaptionStyle = CaptionStyle::Off,
+        /// Height of their letters, hundredths of the picture's height; smaller where they would not fit.
+        size_percent: Whole<2, 20> = Whole::new(5),
+    }
+}
+
+/// How captions are shown.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub enum CaptionStyle {
+    Off,
+    Box,
+    Outline,
+}
