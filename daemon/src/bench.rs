@@ -10,13 +10,13 @@ use std::hint::black_box;
 use std::sync::Arc;
 use std::time::Instant as Wall;
 
-use indicatif::ProgressBar;
 use mouthpiece_render::{Gpu, Offscreen};
 use mouthpiece_rig::{STEP_TICKS, TICK_RATE};
 use serde_json::{Value, json};
 
 use crate::cli::{BenchArgs, Fps, LookArgs, SceneArgs, Size, TierArg, ViewArg};
-use crate::export::Job;
+use crate::export::job::Job;
+use crate::export::stage::Stage;
 use crate::input::Utterance;
 use crate::media::mp4::Mp4Sink;
 use crate::media::output;
@@ -121,7 +121,8 @@ fn export_in(tier: TierArg, cast: &Cast, utterance: Utterance) -> anyhow::Result
     };
     let clip = job.clip();
     let sink = Box::new(Mp4Sink::new(&folder.path().join("bench.mp4"), &clip)?);
-    job.export(sink, &clip, &ProgressBar::hidden())?;
+    let mut stage = Stage::new(&Gpu::headless()?, &job)?;
+    job.export(&mut stage, sink, &clip, &|_| ())?;
     Ok(rounded(clip_s / started.elapsed().as_secs_f64()))
 }
 

@@ -5,6 +5,7 @@
 
 mod config;
 mod head;
+mod jobs;
 mod scene;
 mod skin;
 mod stage;
@@ -23,6 +24,7 @@ use crate::health::Door;
 
 pub use config::{ConfigArgs, ConfigCommand};
 pub use head::{CalibrateArgs, FitArgs, HeadCommand, InfoArgs, LandmarksArgs};
+pub use jobs::JobsArgs;
 pub use scene::{BackgroundArg, SceneArgs};
 pub use skin::SkinArg;
 pub use stage::StageArgs;
@@ -198,22 +200,30 @@ impl From<StateArg> for State {
 }
 
 /// Offline video with sound: the same face faster than real time, the same bytes every time
-#[derive(Debug, Args)]
+#[derive(Clone, Debug, Args)]
 #[command(
-    after_help = "The kind of output goes by the name: OUT.mp4 is H.264 with Opus sound; OUT-%05d.png or a folder \
-                  (OUT/) is one picture a frame; - is raw RGBA frames on standard output.\n\n\
+    mut_arg("labels", |arg| arg.required_unless_present("jobs")),
+    after_help = "The kind of output goes by the name: OUT.mp4 is H.264 with Opus sound; OUT.webm is VP9 and Opus, with \
+                  alpha where the background is transparent (by ffmpeg); OUT-%05d.png or a folder (OUT/) is one picture \
+                  a frame; - is raw frames on standard output; /dev/videoN is a v4l2loopback device, in real time \
+                  (by ffmpeg).\n\n\
                   Examples:\n  mouthpiece export --labels hello.phn --audio hello.wav -o hello.mp4\n  \
                   mouthpiece export --demo --size 1280x720 --fps 29.97 --expression happiness -o demo.mp4\n  \
                   mouthpiece export --text \"Hello there\" --tts flite --voice rms -o hello.mp4\n  \
                   mouthpiece export --text \"as it is said there\" --audio hello.wav -o hello.mp4\n  \
-                  mouthpiece export --demo --size 640x480 -o - | ffmpeg -f rawvideo -pix_fmt rgba -s 640x480 -r 30 -i - demo.webm"
+                  mouthpiece export --demo --background transparent -o demo.webm\n  \
+                  mouthpiece export --demo -o - --raw y4m | ffmpeg -i - demo.mkv\n  \
+                  mouthpiece export --jobs list.csv --tier low --report report.json"
 )]
 pub struct ExportArgs {
     #[command(flatten)]
     pub input: InputArgs,
     /// Where to write
-    #[arg(short, long, value_name = "OUT")]
-    pub output: PathBuf,
+    #[arg(short, long, value_name = "OUT", required_unless_present = "jobs")]
+    pub output: Option<PathBuf>,
+    /// What `-o -` writes
+    #[arg(long, value_enum, value_name = "FORMAT", default_value_t = RawArg::Rgba)]
+    pub raw: RawArg,
     /// Size of the picture in pixels
     #[arg(long, value_name = "WxH", default_value = "640x480")]
     pub size: Size,
@@ -235,6 +245,18 @@ pub struct ExportArgs {
     /// Encode with the ffmpeg program of this machine instead of the built-in encoder
     #[arg(long)]
     pub via_ffmpeg: bool,
+    #[command(flatten)]
+    pub list: JobsArgs,
+}
+
+/// Raw frames.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, ValueEnum)]
+pub enum RawArg {
+    /// Four bytes a pixel, rows from the top, no header
+    #[default]
+    Rgba,
+    /// YUV4MPEG2: 4:2:0 in BT.709, with a header that tells size and rate
+    Y4m,
 }
 
 /// How a picture looks.

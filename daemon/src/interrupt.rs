@@ -12,13 +12,19 @@ static STOP: AtomicBool = AtomicBool::new(false);
 
 /// The user wants the work to stop.
 #[derive(Debug, thiserror::Error)]
-#[error("stopped by a signal; nothing was written")]
-pub struct Interrupted;
+#[error("{0}")]
+pub struct Interrupted(pub String);
+
+impl Default for Interrupted {
+    fn default() -> Self {
+        Self("stopped by a signal; nothing was written".into())
+    }
+}
 
 /// Fails once a signal has come.
 pub fn check() -> Result<(), Interrupted> {
     if STOP.load(Ordering::Relaxed) {
-        Err(Interrupted)
+        Err(Interrupted::default())
     } else {
         Ok(())
     }

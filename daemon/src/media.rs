@@ -8,10 +8,14 @@
 //! | [`mp4`] | H.264 and Opus in MP4 |
 //! | [`frames`] | one PNG a frame, or raw frames to standard output |
 //! | [`ffmpeg`] | through the ffmpeg program of this machine |
+//! | [`camera`] | which devices take pictures as a camera's |
+//! | [`hidden`] | names of what is not finished yet |
 //! | [`yuv`] | RGB to what video encoders take |
 
+pub mod camera;
 pub mod ffmpeg;
 pub mod frames;
+pub mod hidden;
 pub mod mp4;
 pub mod output;
 pub mod resample;

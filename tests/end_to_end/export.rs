@@ -17,13 +17,13 @@ const FPS: f64 = 30.0;
 const ROUNDING_S: f64 = 0.001;
 
 /// A few short labels that need no sound.
-const SHORT: &str = "0 1600 h#\n1600 2400 m\n2400 4800 aa\n4800 6400 h#\n";
+pub(crate) const SHORT: &str = "0 1600 h#\n1600 2400 m\n2400 4800 aa\n4800 6400 h#\n";
 
-fn text(path: &Path) -> String {
+pub(crate) fn text(path: &Path) -> String {
     path.to_string_lossy().into_owned()
 }
 
-fn names(folder: &Path) -> Vec<String> {
+pub(crate) fn names(folder: &Path) -> Vec<String> {
     let entries = fs::read_dir(folder).unwrap();
     let mut names: Vec<_> = entries
         .map(|e| e.unwrap().file_name().to_string_lossy().into_owned())

@@ -6,6 +6,8 @@
 //! | `expression` | faces over speech, scripts of them |
 //! | `backdrop` | what is behind the head, and alpha |
 //! | `export` | videos: in step, the same every time, whole or not there |
+//! | `formats` | alpha in WebM, pictures for pipes and cameras |
+//! | `jobs` | lists of videos: failures, resuming, shares of a list, full disks |
 //! | `head` | head files: spoken with, looked at, refused |
 //! | `head_fit` | scans made heads, and what is no scan refused |
 //! | `head_landmarks` | the marking window where there is no display |
@@ -30,11 +32,13 @@ mod backdrop;
 mod closures;
 mod export;
 mod expression;
+mod formats;
 mod graphics;
 mod head;
 mod head_fit;
 mod head_landmarks;
 mod house;
+mod jobs;
 mod labels;
 mod mouth;
 mod outline;

@@ -84,7 +84,7 @@ pub async fn speak((read, mut write): Stream, mut source: Source, stop: &Stop) -
                 if tokio::time::timeout(STOP_PATIENCE, last).await.is_err() {
                     tracing::warn!("the daemon did not say that it stopped");
                 }
-                return Err(Interrupted.into());
+                return Err(Interrupted::default().into());
             }
         }
     }

@@ -194,7 +194,7 @@ fn perform(
     seen?;
     spoken?;
     if stop.by_signal() {
-        return Err(Interrupted.into());
+        return Err(Interrupted::default().into());
     }
     Ok(())
 }

@@ -1,13 +1,15 @@
-//! Frames without a container: one PNG each, or raw RGBA on standard output for another program.
+//! Frames without a container: one PNG each, or raw frames on standard output for another program.
 
-use std::fs;
+use std::fs::{self, File};
 use std::io::{self, BufWriter, Write};
+use std::ops::Range;
 use std::path::{Path, PathBuf};
 
 use anyhow::{Context as _, bail};
 use tempfile::TempDir;
 
-use super::{Clip, FrameSink, output};
+use super::yuv::Yuv;
+use super::{Clip, FrameSink, hidden, output};
 
 /// Encodes one RGBA picture as PNG.
 pub fn png(rgba: &[u8], width: u32, height: u32) -> anyhow::Result<Vec<u8>> {
@@ -40,7 +42,7 @@ impl PngSink {
             }
         };
         let temp = tempfile::Builder::new()
-            .prefix(".mouthpiece-")
+            .prefix(&hidden::prefix(target))
             .tempdir_in(&folder)
             .map_err(|e| output::unwritable(target, &e))?;
         let size = (clip.width, clip.height);
@@ -67,11 +69,22 @@ impl FrameSink for PngSink {
         for k in 0..self.count {
             let name = self.name.at(k);
             let target = self.folder.join(&name);
-            fs::rename(self.temp.path().join(&name), &target)
+            let temp = self.temp.path().join(&name);
+            File::open(&temp)
+                .and_then(|file| file.sync_all())
+                .and_then(|()| fs::rename(&temp, &target))
                 .map_err(|e| output::unwritable(&target, &e))?;
         }
+        output::sync_folder(&self.folder);
         Ok(())
     }
+}
+
+/// Where the pictures of a sequence lie that was written to `target`.
+pub fn paths(target: &Path, numbers: Range<u64>) -> anyhow::Result<impl Iterator<Item = PathBuf>> {
+    let (folder, name) =
+        Pattern::parse(target)?.unwrap_or_else(|| (target.to_path_buf(), Pattern::plain()));
+    Ok(numbers.map(move |k| folder.join(name.at(k))))
 }
 
 /// A file name with a number in it.
@@ -134,27 +147,84 @@ impl Pattern {
     }
 }
 
-/// Raw RGBA frames, one behind the other, no header.
-pub struct RawSink<W: Write>(BufWriter<W>);
+/// Raw frames, one behind the other.
+pub struct RawSink<W: Write> {
+    out: BufWriter<W>,
+    format: Format,
+}
+
+/// What raw frames are.
+enum Format {
+    /// RGBA, no header.
+    Rgba,
+    /// Planes with YUV4MPEG2's header, which tells the reader size and rate.
+    Y4m { header: Option<String>, yuv: Yuv },
+}
 
 impl RawSink<io::Stdout> {
-    /// To standard output.
+    /// RGBA to standard output.
     pub fn stdout() -> Self {
-        Self(BufWriter::new(io::stdout()))
+        Self::new(io::stdout(), Format::Rgba)
+    }
+
+    /// YUV4MPEG2 to standard output: 4:2:0, BT.709, limited range, chroma in the middle of four pixels.
+    pub fn stdout_y4m(clip: &Clip) -> anyhow::Result<Self> {
+        if clip.width % 2 != 0 || clip.height % 2 != 0 {
+            let even = |side: u32| side.next_multiple_of(2);
+            let (width, height) = (even(clip.width), even(clip.height));
+            bail!("Y4M of 4:2:0 needs even sides: use --size {width}x{height}, or --raw rgba");
+        }
+        let (num, den) = clip.fps;
+        let header = format!(
+            "YUV4MPEG2 W{} H{} F{num}:{den} Ip A1:1 C420jpeg XCOLORRANGE=LIMITED\n",
+            clip.width, clip.height
+        );
+        let yuv = Yuv::new(clip.width as usize, clip.height as usize);
+        let header = Some(header);
+        Ok(Self::new(io::stdout(), Format::Y4m { header, yuv }))
+    }
+}
+
+impl<W: Write> RawSink<W> {
+    fn new(out: W, format: Format) -> Self {
+        let out = BufWriter::new(out);
+        Self { out, format }
+    }
+
+    fn write(&mut self, rgba: &[u8]) -> io::Result<()> {
+        match &mut self.format {
+            Format::Rgba => self.out.write_all(rgba),
+            Format::Y4m { header, yuv } => {
+                if let Some(header) = header.take() {
+                    self.out.write_all(header.as_bytes())?;
+                }
+                yuv.set(rgba);
+                self.out.write_all(b"FRAME\n")?;
+                for plane in [&yuv.y, &yuv.u, &yuv.v] {
+                    self.out.write_all(plane)?;
+                }
+                Ok(())
+            }
+        }
+    }
+}
+
+/// What became of the other end of the pipe.
+fn gone(error: io::Error) -> anyhow::Error {
+    if error.kind() == io::ErrorKind::BrokenPipe {
+        anyhow::Error::new(error).context("the program that takes the frames has stopped reading")
+    } else {
+        output::unwritable(Path::new("standard output"), &error)
     }
 }
 
 impl<W: Write + Send> FrameSink for RawSink<W> {
     fn frame(&mut self, rgba: &[u8]) -> anyhow::Result<()> {
-        self.0
-            .write_all(rgba)
-            .context("the program that takes the frames has stopped reading")
+        self.write(rgba).map_err(gone)
     }
 
     fn finish(mut self: Box<Self>) -> anyhow::Result<()> {
-        self.0
-            .flush()
-            .context("the program that takes the frames has stopped reading")
+        self.out.flush().map_err(gone)
     }
 }
 

@@ -95,7 +95,9 @@ impl Mp4Sink {
             let Some(packet) = packets.next()? else {
                 break;
             };
-            self.muxer.audio(packet).context("cannot write the sound")?;
+            self.muxer
+                .audio(packet)
+                .map_err(|e| self.output.unwritable(&e))?;
         }
         Ok(())
     }
@@ -107,7 +109,7 @@ impl FrameSink for Mp4Sink {
         let (sample, key) = self.video.encode(rgba, millis)?;
         self.muxer
             .video(sample, key)
-            .context("cannot write the picture")?;
+            .map_err(|e| self.output.unwritable(&e))?;
         self.done += 1;
         let next = self.done * 48_000 * u64::from(self.fps.1) / u64::from(self.fps.0);
         self.sound_until(next)
@@ -118,7 +120,7 @@ impl FrameSink for Mp4Sink {
         let config = self.video.config().context("there is no frame to write")?;
         self.muxer
             .finish(config)
-            .context("cannot write the end of the file")?;
+            .map_err(|e| self.output.unwritable(&e))?;
         self.output.commit()
     }
 }

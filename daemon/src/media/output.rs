@@ -8,6 +8,8 @@ use std::path::{Path, PathBuf};
 use anyhow::{Context as _, bail};
 use tempfile::NamedTempFile;
 
+use super::hidden;
+
 /// A file in the making.
 #[derive(Debug)]
 pub struct Output {
@@ -32,12 +34,13 @@ impl Output {
             Ok(meta) => !meta.is_file(),
             Err(_) => false,
         };
-        let folder = match target.parent() {
-            _ if special => std::env::temp_dir(),
-            Some(parent) if !parent.as_os_str().is_empty() => parent.to_path_buf(),
-            _ => PathBuf::from("."),
+        let folder = if special {
+            std::env::temp_dir()
+        } else {
+            hidden::folder(&target)
         };
-        let temp = builder(&target)
+        let prefix = hidden::prefix(&target);
+        let temp = builder(&target, &prefix)
             .tempfile_in(&folder)
             .map_err(|e| unwritable(&target, &e))?;
         Ok(Self {
@@ -57,7 +60,13 @@ impl Output {
         self.temp.path()
     }
 
-    /// Puts what was written under its final name.
+    /// The one sentence for a write into it that failed.
+    pub fn unwritable(&self, error: &io::Error) -> anyhow::Error {
+        unwritable(&self.target, error)
+    }
+
+    /// Puts what was written under its final name, once it is on the disk: a machine that loses its power leaves the
+    /// file of before or all of this one.
     pub fn commit(self) -> anyhow::Result<()> {
         let target = self.target;
         if self.special {
@@ -66,10 +75,20 @@ impl Output {
             io::copy(&mut from, &mut to).map_err(|e| unwritable(&target, &e))?;
             return Ok(());
         }
+        let synced = self.temp.as_file().sync_all();
+        synced.map_err(|e| unwritable(&target, &e))?;
         self.temp
             .persist(&target)
             .map_err(|e| unwritable(&target, &e.error))?;
+        sync_folder(&hidden::folder(&target));
         Ok(())
+    }
+}
+
+/// Puts the names in a folder on the disk. Where that cannot be done, they get there a little later.
+pub fn sync_folder(folder: &Path) {
+    if let Ok(folder) = File::open(folder) {
+        let _ = folder.sync_all();
     }
 }
 
@@ -112,15 +131,18 @@ pub fn unwritable(target: &Path, error: &io::Error) -> anyhow::Error {
             "you may not write there; choose another folder".into()
         }
         io::ErrorKind::StorageFull => "there is no space left; free some".into(),
+        io::ErrorKind::QuotaExceeded | io::ErrorKind::FileTooLarge => {
+            "you may not write so much there; ask for more, or choose another folder".into()
+        }
         _ => error.to_string(),
     };
     anyhow::anyhow!("cannot write {}: {why}", target.display())
 }
 
 /// Names and permissions of files in the making. The ending stays, since programs go by it.
-fn builder(target: &Path) -> tempfile::Builder<'static, 'static> {
+fn builder<'a>(target: &Path, prefix: &'a str) -> tempfile::Builder<'a, 'static> {
     let mut builder = tempfile::Builder::new();
-    builder.prefix(".mouthpiece-");
+    builder.prefix(prefix);
     if let Some(ending) = target.extension().and_then(|e| e.to_str()) {
         let ending: &'static str = match ending {
             "mp4" => ".mp4",
