@@ -129,11 +129,17 @@ fn video(text: &mut String) {
         .and_then(|out| String::from_utf8(out.stdout).ok())
         .and_then(|out| out.lines().next().map(str::to_owned));
     match ffmpeg {
-        Some(version) => line(text, "", format_args!("{version}, for --via-ffmpeg")),
+        Some(version) => line(
+            text,
+            "",
+            format_args!("{version}, for .webm, cameras and --via-ffmpeg"),
+        ),
         None => line(
             text,
             "",
-            format_args!("no ffmpeg: install it for --via-ffmpeg; nothing else needs it"),
+            format_args!(
+                "no ffmpeg: install it for .webm, cameras and --via-ffmpeg; nothing else needs it"
+            ),
         ),
     }
 }

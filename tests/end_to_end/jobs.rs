@@ -302,7 +302,8 @@ fn shares_of_a_list_that_are_killed_go_on_where_they_were() {
     assert!(before.len() < outputs.len(), "nothing is left to do");
     // Whole from the first moment: the end of each is there.
     for (name, _) in &before {
-        mouthpiece_tests::mp4::tracks(&fs::read(lists.at(name)).unwrap());
+        let tracks = mouthpiece_tests::mp4::tracks(&fs::read(lists.at(name)).unwrap());
+        assert_eq!(tracks.len(), 2, "{name}");
     }
 
     for running in (0..SHARES).map(start).collect::<Vec<_>>() {

@@ -7,15 +7,19 @@ use std::path::{Path, PathBuf};
 use std::sync::{Condvar, Mutex, MutexGuard, PoisonError};
 use std::time::Duration;
 
-use crate::cli::ExportArgs;
+use crate::cli::{ExportArgs, TierArg};
 use crate::interrupt::{self, Interrupted};
 
-/// What a video takes at any size: a head on the device with its maps, key frames, shaders as machine code.
-/// Measured in software, where all of it is the processor's memory.
-const VIDEO_BYTES: u64 = 330 << 20;
+/// What a video takes at any size: a head with its maps on the device, key frames, shaders as machine code. Measured in
+/// software, where all of it is the processor's memory: each further video of 320x240 in the low tier took 190 MB.
+const LOW_BYTES: u64 = 200 << 20;
 
-/// What each pixel takes, in pictures under way, their samples and the encoder: measured from 640x480 to 1920x1080.
-const PIXEL_BYTES: u64 = 300;
+/// The same with the larger maps of the other tiers: 200 MB more.
+const FINE_BYTES: u64 = 400 << 20;
+
+/// What each pixel takes, in pictures under way, their samples and the encoder: measured 70 in the low tier and 160 in the
+/// high one, from 640x480 to 1920x1080.
+const PIXEL_BYTES: u64 = 160;
 
 /// A byte of a sound file in memory: 8 bits at 16 kHz become 32 at 48, twice, of which one is in the making.
 const SOUND_FACTOR: u64 = 24;
@@ -43,7 +47,7 @@ pub fn cost(args: &ExportArgs) -> u64 {
         .audio
         .as_deref()
         .and_then(|path| fs::metadata(path).ok());
-    VIDEO_BYTES + pixels * PIXEL_BYTES + sound.map_or(0, |file| file.len()) * SOUND_FACTOR
+    video + pixels * PIXEL_BYTES + sound.map_or(0, |file| file.len()) * SOUND_FACTOR
 }
 
 /// Memory for videos.
