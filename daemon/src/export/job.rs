@@ -71,7 +71,7 @@ impl Job {
     ) -> anyhow::Result<()> {
         let done = self.draw(stage, sink, clip, tell);
         // Ctrl-C reaches ffmpeg, too: that it has stopped is no news then.
-        done.or_else(|error| Err(interrupt::check().err().map_or(error, Into::into)))
+        done.map_err(|error| interrupt::check().err().map_or(error, Into::into))
     }
 
     fn draw(

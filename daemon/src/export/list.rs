@@ -31,13 +31,32 @@ use crew::{Crew, Outcome};
 use report::{Entry, Report, State, rounded};
 use row::{Reader, Request};
 
+/// A row of this process's share.
+pub struct Planned {
+    /// Its number in the list, counted from 0.
+    row: usize,
+    /// Counted from 1.
+    line: u64,
+    /// What it asks for, or why that cannot be meant.
+    request: Result<Request, String>,
+}
+
+impl Planned {
+    fn output(&self) -> Option<&Path> {
+        self.request
+            .as_ref()
+            .ok()
+            .map(|request| request.output.as_path())
+    }
+}
+
 /// Runs the command on `list`.
 pub fn run(list: &Path, args: &JobsArgs) -> anyhow::Result<()> {
     let rows = plan(list, args)?;
-    let entry = |(row, line, request): &(usize, u64, Result<Request, String>)| Entry {
-        row: *row,
-        line: *line,
-        output: request.as_ref().ok().map(|request| request.output.clone()),
+    let entry = |planned: &Planned| Entry {
+        row: planned.row,
+        line: planned.line,
+        output: planned.output().map(Path::to_path_buf),
         ..Entry::default()
     };
     let entries: Vec<_> = rows.iter().map(entry).collect();
@@ -45,29 +64,23 @@ pub fn run(list: &Path, args: &JobsArgs) -> anyhow::Result<()> {
     let mut report = Report::new(list, shard, args.report.as_deref(), entries)?;
 
     let bar = super::bar(rows.len() as u64, "videos");
-    let say = |line: u64, output: Option<&Path>, why: &str| {
-        let output = output.map_or_else(String::new, |output| format!(", {}", output.display()));
-        bar.suspend(|| eprintln!("mouthpiece: {} line {line}{output}: {why}", list.display()));
+    let say = |planned: &Planned, why: &str| {
+        let output = planned
+            .output()
+            .map(|output| format!(", {}", output.display()));
+        let (list, line, output) = (list.display(), planned.line, output.unwrap_or_default());
+        bar.suspend(|| eprintln!("mouthpiece: {list} line {line}{output}: {why}"));
     };
     let workers = args.parallel.map_or_else(budget::workers, usize::from);
     let crew = Crew::new(workers);
     // A report that cannot be written does not stop the work either; it is said at the end.
     let mut unreported = Ok(());
     crew.work(&rows, |at, outcome| {
-        let (_, line, request) = &rows[at];
-        let output = request
-            .as_ref()
-            .ok()
-            .map(|request| request.output.as_path());
         match &outcome {
-            Outcome::Failed { why, .. } => say(*line, output, why),
+            Outcome::Failed { why, .. } => say(&rows[at], why),
             Outcome::Done { seconds, .. } => {
-                tracing::info!(
-                    seconds,
-                    line,
-                    "wrote {}",
-                    output.unwrap_or(Path::new("")).display()
-                );
+                let output = rows[at].output().unwrap_or(Path::new(""));
+                tracing::info!(seconds, line = rows[at].line, "wrote {}", output.display());
             }
             Outcome::Unchanged | Outcome::Stopped => {}
         }
@@ -100,11 +113,8 @@ fn enter(entry: &mut Entry, outcome: Outcome) {
     }
 }
 
-/// The rows of this process's share, each with its number in the list and its line.
-fn plan(
-    list: &Path,
-    args: &JobsArgs,
-) -> anyhow::Result<Vec<(usize, u64, Result<Request, String>)>> {
+/// The rows of this process's share.
+fn plan(list: &Path, args: &JobsArgs) -> anyhow::Result<Vec<Planned>> {
     let mut reader = Reader::new(list, args.output_dir.as_deref(), std::env::args_os())?;
     let rows = read::read(list, reader.columns())?;
     let mut outputs: HashMap<PathBuf, u64> = HashMap::new();
@@ -124,7 +134,11 @@ fn plan(
             }
         });
         if args.shard.is_none_or(|shard| shard.has(number)) {
-            share.push((number, line, request));
+            share.push(Planned {
+                row: number,
+                line,
+                request,
+            });
         }
     }
     Ok(share)

@@ -169,7 +169,7 @@ impl RawSink<io::Stdout> {
 
     /// YUV4MPEG2 to standard output: 4:2:0, BT.709, limited range, chroma in the middle of four pixels.
     pub fn stdout_y4m(clip: &Clip) -> anyhow::Result<Self> {
-        if clip.width % 2 != 0 || clip.height % 2 != 0 {
+        if !(clip.width.is_multiple_of(2) && clip.height.is_multiple_of(2)) {
             let even = |side: u32| side.next_multiple_of(2);
             let (width, height) = (even(clip.width), even(clip.height));
             bail!("Y4M of 4:2:0 needs even sides: use --size {width}x{height}, or --raw rgba");

@@ -42,6 +42,10 @@ pub fn workers() -> usize {
 /// What a video will take, bytes.
 pub fn cost(args: &ExportArgs) -> u64 {
     let pixels = u64::from(args.size.width) * u64::from(args.size.height);
+    let video = match args.look.tier {
+        TierArg::Low => LOW_BYTES,
+        TierArg::Medium | TierArg::High => FINE_BYTES,
+    };
     let sound = args
         .input
         .audio

@@ -9,6 +9,7 @@ use std::time::Instant as Wall;
 use crossbeam::channel::{Sender, bounded};
 use mouthpiece_rig::TICK_RATE;
 
+use super::Planned;
 use super::budget::{self, Budget, Share};
 use super::key::Keys;
 use super::record::{Claim, Record};
@@ -34,9 +35,6 @@ pub enum Outcome {
     /// Ctrl-C came first.
     Stopped,
 }
-
-/// A row: its number, its line, what it asks for.
-type Planned = (usize, u64, Result<Request, String>);
 
 /// Workers and what they share.
 pub struct Crew {
@@ -91,11 +89,11 @@ impl Crew {
         let mut kept = Kept::default();
         loop {
             let at = next.fetch_add(1, Ordering::Relaxed);
-            let Some((_, _, request)) = rows.get(at) else {
+            let Some(planned) = rows.get(at) else {
                 return;
             };
             let begun = Wall::now();
-            let outcome = match request {
+            let outcome = match &planned.request {
                 Ok(request) => self.make(request, &mut kept),
                 Err(why) => Err(anyhow::anyhow!("{why}")),
             };
