@@ -4,6 +4,7 @@
 //! need reading (sizes, rates, colours) are in [`values`].
 
 mod config;
+mod drive;
 mod head;
 mod jobs;
 mod scene;
@@ -23,6 +24,7 @@ use mouthpiece_speech::State;
 use crate::health::Door;
 
 pub use config::{ConfigArgs, ConfigCommand};
+pub use drive::{DriveArg, Says};
 pub use head::{CalibrateArgs, FitArgs, HeadCommand, InfoArgs, LandmarksArgs};
 pub use jobs::JobsArgs;
 pub use scene::{BackgroundArg, SceneArgs};

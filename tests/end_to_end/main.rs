@@ -13,6 +13,7 @@
 //! | `head_landmarks` | the marking window where there is no display |
 //! | `labels` | label files of every sad kind, and the round trip |
 //! | `closures` | lips that close at every rate, over many sentences; look-ahead |
+//! | `puppet` | other avatars, driven over UDP |
 //! | `sound` | sound files of every kind |
 //! | `voices` | text instead of labels: speech engines, recordings |
 //! | `usage` | exit statuses, help, what doctor and bench print |
@@ -42,6 +43,7 @@ mod jobs;
 mod labels;
 mod mouth;
 mod outline;
+mod puppet;
 mod readme;
 mod show;
 mod sound;

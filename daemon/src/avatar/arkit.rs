@@ -1,161 +1,21 @@
-//! ARKit's 52 blend shapes and the angles of head and eyes, in the layout of Live Link Face's CSV.
+//! ARKit's 52 blend shapes, and the angles of head and eyes that Live Link Face puts behind them.
 //!
 //! A shape is 0 at rest and 1 at its extreme. Jaw and lips go by what the simulated mesh does, so
 //! that lips which touch there touch on the other avatar; what only a muscle can do goes by that
 //! muscle. Left and right are the subject's. Cheeks are never puffed, and the tongue stays in.
 
-use std::fmt::Write as _;
-use std::sync::Arc;
+use mouthpiece_rig::{Control, Controls, Muscle};
 
-use glam::Vec3;
-use mouthpiece_rig::{Control, Controls, Head, KeyFrame, Measures, Muscle, lip_level, measure};
+use super::face::{Face, PRESS_MM};
 
-use super::{Rows, timecode};
-use crate::cli::Fps;
-
-/// Angles behind the shapes, radians: yaw to the subject's left, pitch up, roll to the left shoulder.
-const ANGLES: [&str; 9] = [
-    "HeadYaw",
-    "HeadPitch",
-    "HeadRoll",
-    "LeftEyeYaw",
-    "LeftEyePitch",
-    "LeftEyeRoll",
-    "RightEyeYaw",
-    "RightEyePitch",
-    "RightEyeRoll",
-];
-
-/// Jaw angle that counts as wide open: as far as the head's jaw goes.
-const JAW_OPEN_RAD: f32 = 0.45;
-/// Share of its width by which a mouth narrows for the roundest vowel (/uw/, measured: 0.22).
-const NARROW: f32 = 0.25;
-/// How far lips go forward for the roundest sounds, mm (/uw sh/, measured: 3.6 to 3.9).
-const FORWARD_MM: f32 = 4.0;
-/// Gap at which round lips are a funnel and no longer a pout, mm: twice that of /uw/.
-const FUNNEL_MM: f32 = 8.0;
-/// Share of its width by which the widest smile widens a mouth.
-const WIDE: f32 = 0.2;
-/// Gap above which nothing of a press is left, mm.
-const PRESS_MM: f32 = 1.0;
-
-/// What a face does at an instant.
-struct Face<'a> {
-    is: &'a Controls,
-    mouth: Measures,
-    /// The mouth's width at rest, mm.
-    width_mm: f32,
-    /// The gap that the jaw alone would open, mm.
-    jaw_mm: f32,
-}
-
-impl Face<'_> {
-    fn belly(&self, muscle: Muscle, left: bool) -> f32 {
-        self.is.contraction(muscle, left)
-    }
-
-    fn both(&self, muscle: Muscle) -> f32 {
-        0.5 * (self.belly(muscle, true) + self.belly(muscle, false))
-    }
-
-    /// How much more the left belly pulls than the right one.
-    fn aside(&self, muscle: Muscle) -> f32 {
-        self.belly(muscle, true) - self.belly(muscle, false)
-    }
-
-    fn gap_mm(&self) -> f32 {
-        self.mouth.aperture_mm.max(0.0)
-    }
-
-    fn jaw_open(&self) -> f32 {
-        self.mouth.jaw_rad / JAW_OPEN_RAD
-    }
-
-    /// ARKit's mouthClose undoes jawOpen at the lips: both at the same value is a closed mouth.
-    fn close(&self) -> f32 {
-        if self.jaw_mm <= 0.0 {
-            return 0.0;
-        }
-        self.jaw_open() * (1.0 - self.gap_mm() / self.jaw_mm).clamp(0.0, 1.0)
-    }
-
-    fn round(&self) -> f32 {
-        let narrow = (1.0 - self.mouth.width_mm / self.width_mm) / NARROW;
-        let forward = self.mouth.protrusion_mm / FORWARD_MM;
-        (0.5 * (narrow.clamp(0.0, 1.0) + forward.clamp(0.0, 1.0))).clamp(0.0, 1.0)
-    }
-
-    fn open(&self) -> f32 {
-        (self.gap_mm() / FUNNEL_MM).min(1.0)
-    }
-
-    /// A pull outwards counts as far as the mouth did widen: others hold against it.
-    fn stretch(&self, left: bool) -> f32 {
-        let wide = (self.mouth.width_mm / self.width_mm - 1.0) / WIDE;
-        let pull = self.belly(Muscle::Risorius, left) + 0.5 * self.belly(Muscle::Platysma, left);
-        pull.min(wide).max(0.0)
-    }
-
-    fn press(&self) -> f32 {
-        let [upper, lower] = [
-            Muscle::OrbicularisOrisSuperior,
-            Muscle::OrbicularisOrisInferior,
-        ]
-        .map(|m| self.both(m));
-        upper.min(lower) * (1.0 - self.gap_mm() / PRESS_MM).max(0.0)
-    }
-
-    fn blink(&self, left: bool) -> f32 {
-        let lid = if left { Control::LidL } else { Control::LidR };
-        self.is[lid].max(0.0) + self.belly(Muscle::OrbicularisOculiPalpebral, left)
-    }
-
-    fn wide(&self, left: bool) -> f32 {
-        let lid = if left { Control::LidL } else { Control::LidR };
-        self.is[lid] / lid.range().0
-    }
-
-    /// Both eyes look the same way.
-    fn look(&self, control: Control) -> f32 {
-        self.is[control] / control.range().1
-    }
-
-    fn brow_down(&self, left: bool) -> f32 {
-        self.belly(Muscle::CorrugatorSupercilii, left)
-            + 0.5 * self.belly(Muscle::DepressorSupercilii, left)
-            + 0.5 * self.belly(Muscle::Procerus, left)
-    }
-
-    fn cheek(&self, left: bool) -> f32 {
-        let smile = 0.5 * self.belly(Muscle::ZygomaticusMajor, left);
-        self.belly(Muscle::OrbicularisOculiOrbital, left).max(smile)
-    }
-
-    fn smile(&self, left: bool) -> f32 {
-        self.belly(Muscle::ZygomaticusMajor, left)
-            + 0.3 * self.belly(Muscle::ZygomaticusMinor, left)
-    }
-
-    fn upper_up(&self, left: bool) -> f32 {
-        self.belly(Muscle::LevatorLabiiSuperioris, left)
-            + 0.5 * self.belly(Muscle::LevatorLabiiSuperiorisAlaequeNasi, left)
-    }
-
-    fn sneer(&self, left: bool) -> f32 {
-        self.belly(Muscle::LevatorLabiiSuperiorisAlaequeNasi, left)
-            + 0.5 * self.belly(Muscle::Nasalis, left)
-    }
-
-    fn sideways(&self) -> f32 {
-        0.5 * (self.aside(Muscle::Risorius) + self.aside(Muscle::Buccinator))
-    }
-}
+/// How many shapes there are.
+pub const COUNT: usize = 52;
 
 /// A shape's name and its value, before it is held within 0 and 1.
 type Shape = (&'static str, fn(&Face<'_>) -> f32);
 
 /// A row a shape, in Live Link Face's order; behind it what it is read off, its scale, and why.
-const SHAPES: [Shape; 52] = [
+const SHAPES: [Shape; COUNT] = [
     // Lid control (1: closed) and the orbicularis' palpebral part, which closes the same lids.
     ("EyeBlinkLeft", |f| f.blink(true)),
     // Gaze over its range, 0.45 rad up or down and 0.6 rad aside: as far as eyes go without the head.
@@ -252,90 +112,62 @@ const SHAPES: [Shape; 52] = [
     ("TongueOut", |_| 0.0),
 ];
 
-/// A head's blend shapes.
-struct Reader {
-    head: Arc<Head>,
-    width_mm: f32,
-    /// Where the lower lip touches the upper one, at rest.
-    lip: Vec3,
+/// The shapes' names, as Live Link Face writes them; ARKit's own begin with a small letter.
+pub fn names() -> impl Iterator<Item = &'static str> {
+    SHAPES.iter().map(|(name, _)| *name)
 }
 
-impl Reader {
-    fn new(head: &Arc<Head>) -> Self {
-        let lower = &head.lips.lower;
-        let lip = lower
-            .get(lower.len() / 2)
-            .and_then(|c| head.skin.mesh.positions.get(c[lip_level::CONTACT] as usize));
-        Self {
-            head: Arc::clone(head),
-            width_mm: measure(head, &head.rest_frame()).width_mm.max(1.0),
-            lip: lip.copied().unwrap_or_default(),
-        }
-    }
-
-    fn shapes(&self, frame: &KeyFrame) -> [f32; 52] {
-        let mouth = measure(&self.head, frame);
-        let jaw = self.head.mandible(mouth.jaw_rad);
-        let face = Face {
-            is: &frame.state,
-            jaw_mm: self.lip.y - jaw.transform_point3(self.lip).y,
-            width_mm: self.width_mm,
-            mouth,
-        };
-        // Adding 0 makes of -0 a plain one.
-        SHAPES.map(|(_, value)| value(&face).clamp(0.0, 1.0) + 0.0)
-    }
+/// The values of the shapes, each within 0 and 1, in the order of [`names`].
+pub fn shapes(face: &Face<'_>) -> [f32; COUNT] {
+    // Adding 0 makes of -0 a plain one.
+    SHAPES.map(|(_, value)| value(face).clamp(0.0, 1.0) + 0.0)
 }
 
-/// A recording being written.
-pub struct Table {
-    reader: Reader,
-    rate: Fps,
-    text: String,
-}
+/// Names of [`angles`].
+pub const ANGLES: [&str; 9] = [
+    "HeadYaw",
+    "HeadPitch",
+    "HeadRoll",
+    "LeftEyeYaw",
+    "LeftEyePitch",
+    "LeftEyeRoll",
+    "RightEyeYaw",
+    "RightEyePitch",
+    "RightEyeRoll",
+];
 
-impl Table {
-    pub fn new(head: &Arc<Head>, rate: Fps) -> Self {
-        let shapes = SHAPES.iter().map(|(name, _)| *name);
-        let names: Vec<_> = shapes.chain(ANGLES).collect();
-        Self {
-            reader: Reader::new(head),
-            rate,
-            text: format!("Timecode,BlendShapeCount,{}\n", names.join(",")),
-        }
+/// The angles of head and eyes in Live Link Face's sense: radians, yaw to the subject's right, pitch
+/// down, roll to the left shoulder.
+///
+/// Epic documents neither unit nor sign. Recordings that users have published settle both for the
+/// eyes: `EyeLookUp` of 0.47 goes with a pitch of -0.205, which is a gaze of 25 degrees where the shape
+/// is 1 (77 if the unit were half turns, as in the engine's own first publisher), and the yaw falls as
+/// the eyes go to the subject's left. The engine turns head and eyes into angles by the same code.
+pub fn angles(is: &Controls) -> [f32; 9] {
+    let eye = [-is[Control::GazeYaw], -is[Control::GazePitch], 0.0];
+    let head = [
+        -is[Control::HeadYaw],
+        -is[Control::HeadPitch],
+        is[Control::HeadRoll],
+    ];
+    let mut all = [0.0; 9];
+    for (to, from) in all.chunks_exact_mut(3).zip([head, eye, eye]) {
+        to.copy_from_slice(&from);
     }
-}
-
-impl Rows for Table {
-    fn row(&mut self, k: u64, frame: &KeyFrame) {
-        let count = SHAPES.len() + ANGLES.len();
-        let _ = write!(self.text, "{},{count}", timecode(self.rate, k));
-        let is = |control| frame.state[control];
-        let eye = [is(Control::GazeYaw), is(Control::GazePitch), 0.0];
-        let angles = [
-            is(Control::HeadYaw),
-            is(Control::HeadPitch),
-            is(Control::HeadRoll),
-        ];
-        let values = self.reader.shapes(frame).into_iter();
-        for value in values.chain(angles).chain(eye).chain(eye) {
-            let _ = write!(self.text, ",{value:.6}");
-        }
-        self.text.push('\n');
-    }
-
-    fn finish(self: Box<Self>) -> String {
-        self.text
-    }
+    // Of -0 a plain one.
+    all.map(|angle| angle + 0.0)
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::avatar::face::Reader;
     use crate::avatar::tests::held;
     use mouthpiece_phonemes::Phone;
+    use mouthpiece_rig::Head;
+    use std::sync::Arc;
 
-    fn shape(values: &[f32; 52], name: &str) -> f32 {
+    fn shape(values: &[f32; COUNT], name: &str) -> f32 {
         let found = SHAPES.iter().position(|(known, _)| *known == name);
         values[found.unwrap()]
     }
@@ -344,7 +176,7 @@ mod tests {
     fn phones_have_the_shapes_that_they_are_known_by() {
         let (head, frames) = held(&[Phone::M, Phone::P, Phone::B, Phone::Aa, Phone::Uw, Phone::F]);
         let reader = Reader::new(&head);
-        let all: Vec<_> = frames.iter().map(|f| reader.shapes(f)).collect();
+        let all: Vec<_> = frames.iter().map(|f| shapes(&reader.face(f))).collect();
         let [m, p, b, aa, uw, f] = all.as_slice() else {
             panic!()
         };
@@ -374,7 +206,8 @@ mod tests {
         head.state[Control::GazeYaw] = 0.3;
         head.state[Control::ZygomaticusMajor] = 0.5;
         head.state[Control::ZygomaticusMajorSide] = 0.5;
-        let values = Reader::new(&Arc::new(Head::reference().unwrap())).shapes(&head);
+        let reader = Reader::new(&Arc::new(Head::reference().unwrap()));
+        let values = shapes(&reader.face(&head));
         for (name, expected) in [
             ("EyeBlinkLeft", 1.0),
             ("EyeBlinkRight", 0.0),
@@ -389,34 +222,12 @@ mod tests {
     }
 
     #[test]
-    fn columns_are_those_of_live_link_face() {
-        let head = Arc::new(Head::reference().unwrap());
-        let mut table = Box::new(Table::new(&head, Fps { num: 60, den: 1 }));
-        table.row(61, &head.rest_frame());
-        let text = table.finish();
-        let (header, row) = text.split_once('\n').unwrap();
-        let names: Vec<_> = header.split(',').collect();
-        assert_eq!(names.len(), 2 + 52 + 9);
-        assert_eq!(row.trim_end().split(',').count(), names.len());
-        assert!(row.starts_with("00:00:01:01.000,61,0.000000,"));
-        let mut sorted = names.clone();
-        sorted.sort_unstable();
-        sorted.dedup();
-        assert_eq!(sorted.len(), names.len());
-        for (at, name) in [
-            (2, "EyeBlinkLeft"),
-            (9, "EyeBlinkRight"),
-            (16, "JawForward"),
-            (19, "JawOpen"),
-            (20, "MouthClose"),
-            (25, "MouthSmileLeft"),
-            (43, "BrowDownLeft"),
-            (48, "CheekPuff"),
-            (53, "TongueOut"),
-            (54, "HeadYaw"),
-            (62, "RightEyeRoll"),
-        ] {
-            assert_eq!(names[at], name);
-        }
+    fn angles_have_the_signs_of_published_recordings() {
+        let mut is = Controls::default();
+        is[Control::GazeYaw] = 0.2;
+        is[Control::GazePitch] = 0.1;
+        is[Control::HeadRoll] = 0.05;
+        let all = angles(&is);
+        assert_eq!(all, [0.0, 0.0, 0.05, -0.2, -0.1, 0.0, -0.2, -0.1, 0.0]);
     }
 }

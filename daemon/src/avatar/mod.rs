@@ -1,19 +1,26 @@
-//! `mouthpiece curves --as …`: the same speech in the words of other avatars.
+//! Our speech in the words of other avatars: for files (`mouthpiece curves --as …`) and, live, for
+//! `--drive` (`live::puppet`), by the same code.
 //!
-//! | module | writes |
+//! | module | gives |
 //! |---|---|
-//! | [`arkit`] | ARKit's 52 blend shapes, as Live Link Face records them |
-//! | [`visemes`] | the 15 visemes of Oculus LipSync, as weights that add up to 1 |
+//! | [`face`] | what the simulated face does: what shapes and expressions are made of |
+//! | [`arkit`] | ARKit's 52 blend shapes and Live Link Face's angles |
+//! | [`recording`] | them as Live Link Face records them, CSV |
+//! | [`vrm`] | the expressions of VRM avatars |
+//! | [`visemes`] | the 15 visemes of Oculus LipSync, as weights that add up to 1, CSV |
 //! | [`fap`] | MPEG-4's facial animation parameters of the mouth |
 //!
 //! Shapes and parameters are read off the simulated head, visemes off the labels alone: another
-//! avatar brings its own lips to those. Nothing is sent anywhere; these are files.
+//! avatar brings its own lips to those, and what changes only the face has no effect on them.
 
-mod arkit;
+pub mod arkit;
+pub mod face;
 mod fap;
+mod recording;
 mod visemes;
+pub mod vrm;
 
-use crate::cli::{AvatarArg, CurvesArgs, Fps, Usage};
+use crate::cli::{AvatarArg, CurvesArgs, Fps, StateArg, Usage};
 use crate::input::Utterance;
 use crate::interrupt;
 use crate::media::output;
@@ -38,6 +45,7 @@ pub fn write(
     if json.is_some_and(|e| e == "json") {
         return Err(Usage("curves --as writes text; name the output .csv or .fap".into()).into());
     }
+    refuse_what_has_no_effect(avatar, args)?;
     let rate = args.rate;
     let mut rows: Box<dyn Rows> = match avatar {
         AvatarArg::Oculus => {
@@ -45,7 +53,7 @@ pub fn write(
             let text = visemes::table(track.segments(), rate, utterance.ticks);
             return output::write_or_print(args.output.as_deref(), &text);
         }
-        AvatarArg::Arkit => Box::new(arkit::Table::new(&cast.head, rate)),
+        AvatarArg::Arkit => Box::new(recording::Table::new(&cast.head, rate)),
         AvatarArg::Fap => Box::new(fap::Table::new(&cast.head, rate)?),
     };
     let instants = instants()?;
@@ -58,6 +66,32 @@ pub fn write(
     }
     instants.finish()?;
     output::write_or_print(args.output.as_deref(), &rows.finish())
+}
+
+/// Options that would silently change nothing.
+fn refuse_what_has_no_effect(avatar: AvatarArg, args: &CurvesArgs) -> Result<(), Usage> {
+    if avatar == AvatarArg::Fap && args.rate.den != 1 {
+        let why = "--as fap: its rate is a whole number; give --rate 25, 30 or 60";
+        return Err(Usage(why.into()));
+    }
+    if avatar != AvatarArg::Oculus {
+        return Ok(());
+    }
+    let given = [
+        ("--seed", args.seed.is_some()),
+        ("--look-ahead", args.look_ahead.is_some()),
+        ("--expression", args.mood.expression.is_some()),
+        ("--script", args.mood.script.is_some()),
+        ("--state", args.mood.state != StateArg::default()),
+        ("--head", args.cast.head.is_some()),
+        ("--tissue", args.cast.tissue.is_some()),
+    ];
+    match given.into_iter().find(|(_, given)| *given) {
+        None => Ok(()),
+        Some((option, _)) => Err(Usage(format!(
+            "{option} has no effect with --as oculus: visemes come of the labels alone; leave it out, or take --as arkit"
+        ))),
+    }
 }
 
 /// When row `k` is due, as HH:MM:SS:FF.mmm: frames within the second and thousandths of a frame,

@@ -7,7 +7,7 @@ use clap::Args;
 
 use super::scene::SceneArgs;
 use super::values::Size;
-use super::{CastArgs, LiveTierArg};
+use super::{CastArgs, DriveArg, LiveTierArg};
 
 /// Window, sound device and look of a live face.
 #[derive(Clone, Debug, Default, Args)]
@@ -41,6 +41,13 @@ pub struct StageArgs {
     /// ahead [default: 300]
     #[arg(long, value_name = "MS", value_parser = clap::value_parser!(u16).range(0..=500))]
     pub look_ahead: Option<u16>,
+    /// Drive another avatar with what this face does as it is heard; may be repeated. KIND is vmc
+    /// (VRM 1.0), vmc0 (VRM 0.x), vmc-arkit (ARKit's shapes), livelink (Unreal Engine) or osc
+    #[arg(long, value_name = "KIND:HOST[:PORT]")]
+    pub drive: Vec<DriveArg>,
+    /// How often a second other avatars are told [default: 60]
+    #[arg(long, value_name = "HZ", value_parser = clap::value_parser!(u16).range(1..=240))]
+    pub drive_rate: Option<u16>,
     #[command(flatten)]
     pub cast: CastArgs,
 }

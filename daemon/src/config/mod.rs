@@ -2,7 +2,7 @@
 //!
 //! | module | holds |
 //! |---|---|
-//! | `window`, `look`, `captions`, `sound`, `life`, `wire`, `health`, `log` | one section each: keys, types, defaults, documentation |
+//! | `window`, `look`, `captions`, `sound`, `life`, `drive`, `wire`, `health`, `log` | one section each: keys, types, defaults, documentation |
 //! | `section` | how a section is declared |
 //! | `value` | values with bounds or a syntax of their own |
 //! | `file` | finding and reading the file; what is wrong with it |
@@ -17,6 +17,7 @@
 mod captions;
 mod change;
 mod command;
+mod drive;
 mod file;
 mod health;
 mod life;
@@ -37,6 +38,7 @@ use serde::{Deserialize, Serialize};
 pub use captions::{CaptionStyle, Captions};
 pub use change::Changed;
 pub use command::run;
+pub use drive::Drive;
 pub use health::Health;
 pub use life::Life;
 pub use log::Log;
@@ -57,6 +59,7 @@ pub struct Config {
     pub captions: Captions,
     pub sound: Sound,
     pub life: Life,
+    pub drive: Drive,
     pub wire: Wire,
     pub health: Health,
     pub log: Log,
@@ -67,7 +70,7 @@ type About = (&'static str, &'static [&'static str], &'static [Key]);
 
 impl Config {
     /// The sections, in the order in which they are printed.
-    fn sections() -> [About; 8] {
+    fn sections() -> [About; 9] {
         fn about<S: Section>(name: &'static str, _: fn(Config) -> S) -> About {
             (name, S::ABOUT, S::KEYS)
         }
@@ -77,6 +80,7 @@ impl Config {
             about("captions", |c| c.captions),
             about("sound", |c| c.sound),
             about("life", |c| c.life),
+            about("drive", |c| c.drive),
             about("wire", |c| c.wire),
             about("health", |c| c.health),
             about("log", |c| c.log),

@@ -6,7 +6,7 @@ use anyhow::Result;
 
 use super::value::Whole;
 use super::{Config, file};
-use crate::cli::{BackgroundArg, StageArgs, Usage};
+use crate::cli::{BackgroundArg, DriveArg, StageArgs, Usage};
 use crate::health::Door;
 
 /// Where a live face's configuration comes from; asked again when the file has changed.
@@ -50,6 +50,7 @@ impl Source {
             config.wire.listen = Some(listen.clone());
         }
         set(&mut config.health.http, self.http.as_ref());
+        DriveArg::check(&config.drive.to).map_err(|why| Usage(format!("--drive: {why}")))?;
         if config.look.background == BackgroundArg::Transparent {
             let why = "--background transparent: a window is not; write out-%05d.png with `mouthpiece export`";
             return Err(Usage(why.into()).into());
@@ -72,6 +73,7 @@ impl StageArgs {
             look,
             sound,
             life,
+            drive,
             ..
         } = config;
         window.fullscreen |= self.fullscreen;
@@ -94,5 +96,11 @@ impl StageArgs {
             sound.look_ahead_ms = Whole::new(i64::from(ms));
         }
         set(&mut life.seed, self.seed.as_ref());
+        if !self.drive.is_empty() {
+            drive.to.clone_from(&self.drive);
+        }
+        if let Some(hz) = self.drive_rate {
+            drive.rate_hz = Whole::new(i64::from(hz));
+        }
     }
 }

@@ -26,6 +26,9 @@ fn what_is_printed_reads_back_as_the_same() {
         listen = "127.0.0.1:7716"
         [life]
         seed = 9223372036854775807
+        [drive]
+        to = ["vmc:127.0.0.1:39539", "osc:[::1]:9000"]
+        rate_hz = 30
     "##;
     let config = file::parse(set, "x").unwrap();
     let text = print::toml(&config).unwrap();

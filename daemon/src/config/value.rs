@@ -10,7 +10,7 @@ use serde::{Deserialize, Deserializer, Serialize, Serializer};
 
 use super::captions::CaptionStyle;
 use super::log::Level;
-use crate::cli::{BackgroundArg, LiveTierArg, Size, SkinArg, StateArg, TissueArg};
+use crate::cli::{BackgroundArg, DriveArg, LiveTierArg, Size, SkinArg, StateArg, TissueArg};
 use crate::health::Door;
 
 /// A whole number from `MIN` to `MAX`.
@@ -153,7 +153,7 @@ macro_rules! as_word {
     )+};
 }
 
-as_text!(Size, BackgroundArg, Door);
+as_text!(Size, BackgroundArg, Door, DriveArg);
 as_word!(
     CaptionStyle,
     Level,

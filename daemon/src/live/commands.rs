@@ -237,7 +237,7 @@ fn start(cast: &Cast, config: &Config) -> Result<(Player, Sight)> {
         id => Choice::Id(id.to_owned()),
     };
     let look_ahead_ms = u16::try_from(config.sound.look_ahead_ms.get())?;
-    Player::start(cast, choice, &config.life, look_ahead_ms)
+    Player::start(cast, choice, &config.life, look_ahead_ms, &config.drive)
 }
 
 /// Sockets and control, on one thread: nothing real-time runs there. Whether SIGHUP `hangs_up`, that is, ends the process.

@@ -74,7 +74,8 @@ pub struct Face<B> {
     score: Score,
     clock: AudibleClock,
     cues: Receiver<Cue>,
-    frames: FrameWriter,
+    /// Each who looks at the head has a ring.
+    frames: Vec<FrameWriter>,
     /// The last key frames, a ring.
     kept: Vec<KeyFrame>,
     kept_next: usize,
@@ -89,7 +90,7 @@ impl<B: Body> Face<B> {
         score: Score,
         clock: AudibleClock,
         cues: Receiver<Cue>,
-        frames: FrameWriter,
+        frames: Vec<FrameWriter>,
         vitals: Arc<Vitals>,
     ) -> Self {
         let mut face = Self {
@@ -176,10 +177,12 @@ impl<B: Body> Face<B> {
         self.body.set_epoch(self.epoch);
     }
 
-    /// Sends the present state to the renderer, and keeps it.
+    /// Sends the present state to all who look at it, and keeps it.
     fn publish(&mut self, now_ns: i64) {
         let Self { body, frames, .. } = self;
-        frames.write(|frame| body.save(frame));
+        for ring in frames {
+            ring.write(|frame| body.save(frame));
+        }
         if self.kept.len() < KEPT {
             self.kept.push(KeyFrame::default());
         }

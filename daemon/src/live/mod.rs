@@ -6,6 +6,7 @@
 //! | `simulation` | [`face`], [`score`], [`showing`] | moves the head, a bounded lead ahead (HABER 5.3) |
 //! | `sound` | [`conductor`], [`utterance`], [`sound`] | utterances in turn, mixed into the device's ring |
 //! | the device's own | `sound::callback` | takes from the ring, stamps the clock |
+//! | `puppet` | [`puppet`] | drives other avatars over UDP, where asked |
 //! | `net` | [`server`], [`connection`] | sockets; nothing real-time |
 //!
 //! Between them: [`clock`] (which tick is heard now), [`frames`] (key frames, with epochs), bounded
@@ -28,6 +29,7 @@ mod face;
 mod frames;
 mod motion;
 mod player;
+mod puppet;
 mod reload;
 mod score;
 mod server;

@@ -17,6 +17,7 @@ use super::clock::{AudibleClock, ClockCell};
 use super::conductor::{COMMANDS_MAX, CUES_MAX, Command, Conductor, Ends};
 use super::face::Face;
 use super::frames::{FrameReader, key_frames};
+use super::puppet::Puppeteer;
 use super::score::Score;
 use super::shots::Shots;
 use super::showing::Showing;
@@ -24,7 +25,7 @@ use super::sound::{Choice, Output};
 use super::time::{Origin, drive};
 use super::utterance::Begin;
 use super::vitals::Vitals;
-use crate::config;
+use crate::config::{self, Drive};
 use crate::pipeline::Cast;
 
 /// The head is settled by this much motion before anything is shown.
@@ -34,10 +35,11 @@ const PRE_ROLL_TICKS: i64 = TICK_RATE;
 pub struct Player {
     handle: Handle,
     threads: Vec<JoinHandle<()>>,
+    puppeteer: Option<Puppeteer>,
     has_sound: bool,
 }
 
-/// What the window needs.
+/// What the window needs, and whoever else looks at the head.
 pub struct Sight {
     /// Key frames.
     pub frames: FrameReader,
@@ -70,6 +72,7 @@ impl Player {
         choice: Choice,
         life: &config::Life,
         look_ahead_ms: u16,
+        avatars: &Drive,
     ) -> Result<(Self, Sight)> {
         let origin = Origin::new();
         let cell = Arc::new(ClockCell::default());
@@ -77,6 +80,17 @@ impl Player {
         let (commands, inbox) = mpsc::channel(COMMANDS_MAX);
         let (cue, cues) = crossbeam::channel::bounded(CUES_MAX);
         let (writer, frames) = key_frames();
+        let mut writers = vec![writer];
+        let puppeteer = if avatars.to.is_empty() {
+            None
+        } else {
+            let (writer, frames) = key_frames();
+            writers.push(writer);
+            let clock = AudibleClock::new(Arc::clone(&cell));
+            Some(Puppeteer::start(
+                avatars, &cast.head, frames, clock, origin,
+            )?)
+        };
 
         let calibration = cast.head.calibration.clone();
         let score = Score::new(
@@ -94,7 +108,7 @@ impl Player {
                 let controls = score.controls_at(body.time());
                 body.step(&controls);
             }
-            let mut face = Face::new(body, score, clock, cues, writer, face_vitals);
+            let mut face = Face::new(body, score, clock, cues, writers, face_vitals);
             drive(|| face.step(origin.now_ns()));
         })?;
 
@@ -128,6 +142,7 @@ impl Player {
                 closing: CancellationToken::new(),
             },
             threads: vec![sound, simulation],
+            puppeteer,
             has_sound: has_sound.recv().unwrap_or(false),
         };
         let sight = Sight {
@@ -151,10 +166,12 @@ impl Player {
     }
 
     /// Ends the threads and waits for them; an error when one had died.
-    pub fn end(self) -> Result<()> {
+    pub fn end(mut self) -> Result<()> {
         // Full only while the sound thread is behind; it ends as well when all handles are gone.
         let _ = self.handle.commands.try_send(Command::Quit);
         drop(self.handle);
+        self.threads
+            .extend(self.puppeteer.take().map(Puppeteer::end));
         for thread in self.threads {
             let name = thread.thread().name().unwrap_or("a").to_owned();
             thread.thread().unpark();
@@ -226,7 +243,8 @@ impl Handle {
     }
 }
 
-fn spawn(name: &str, work: impl FnOnce() + Send + 'static) -> Result<JoinHandle<()>> {
+/// Starts a named thread.
+pub(super) fn spawn(name: &str, work: impl FnOnce() + Send + 'static) -> Result<JoinHandle<()>> {
     std::thread::Builder::new()
         .name(name.to_owned())
         .spawn(work)

@@ -80,7 +80,7 @@ fn stage() -> Stage {
             score,
             clock,
             inbox,
-            writer,
+            vec![writer],
             Arc::new(Vitals::new(Origin::new())),
         ),
         cell,
