@@ -46,6 +46,9 @@ pub struct Cli {
     /// Say more on stderr (-v progress and choices, -vv details); RUST_LOG overrides
     #[arg(short, long, global = true, action = ArgAction::Count)]
     pub verbose: u8,
+    /// Log lines as JSON, an object a line
+    #[arg(long, global = true)]
+    pub log_json: bool,
     #[command(subcommand)]
     pub command: Command,
 }
@@ -82,6 +85,9 @@ pub struct RunArgs {
     /// Where health is told (/healthz, /metrics, a page at /): HOST:PORT, or none [default: 127.0.0.1:7717]
     #[arg(long, value_name = "ADDR")]
     pub http: Option<Door>,
+    /// For tests: SIGUSR2 loses the graphics device, and the picture flashes with clicks in what is said
+    #[arg(long, hide = true)]
+    pub test: bool,
     #[command(flatten)]
     pub stage: StageArgs,
 }

@@ -55,21 +55,40 @@ fn main() -> ExitCode {
         Ok(cli) => cli,
         Err(error) => return usage(&error),
     };
-    let live = matches!(
-        cli.command,
-        Command::Run(_) | Command::Say(_) | Command::SyncTest(_)
-    );
-    log::start(cli.verbose, live);
-    if !live {
+    let wanted = wanted_log(&cli);
+    log::start(wanted);
+    if !wanted.live {
         interrupt::watch();
     }
     match dispatch(&cli.command) {
         Ok(()) => ExitCode::SUCCESS,
+        Err(error) if wanted.json => {
+            tracing::error!("{}", sentence(&error));
+            status(&error)
+        }
         Err(error) => {
             eprintln!("mouthpiece: {}", sentence(&error));
             status(&error)
         }
     }
+}
+
+/// What the flags and a live face's configuration say of the log.
+fn wanted_log(cli: &Cli) -> log::Wanted {
+    let stage = match &cli.command {
+        Command::Run(args) => Some(&args.stage),
+        Command::Say(args) => Some(&args.stage),
+        Command::SyncTest(args) => Some(&args.stage),
+        _ => None,
+    };
+    // What is wrong with the configuration is said by the command itself, in the log that is set up here.
+    let configured = stage.map(|stage| {
+        config::Source::new(stage, None)
+            .load()
+            .unwrap_or_default()
+            .log
+    });
+    log::Wanted::new(cli.verbose, cli.log_json, configured.as_ref())
 }
 
 /// The exit status that users script against.

@@ -11,6 +11,7 @@
 //! | `head` | head files: spoken with, looked at, refused |
 //! | `head_fit` | scans made heads, and what is no scan refused |
 //! | `head_landmarks` | the marking window where there is no display |
+//! | `health` | what supervisors, Prometheus and browsers are told; faults that heal |
 //! | `labels` | label files of every sad kind, and the round trip |
 //! | `closures` | lips that close at every rate, over many sentences; look-ahead |
 //! | `puppet` | other avatars, driven over UDP |
@@ -38,6 +39,7 @@ mod graphics;
 mod head;
 mod head_fit;
 mod head_landmarks;
+mod health;
 mod house;
 mod jobs;
 mod labels;

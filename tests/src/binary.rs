@@ -101,12 +101,7 @@ pub struct Running {
 impl Running {
     /// Sends the signal of this name (`INT`, `TERM`).
     pub fn signal(&self, name: &str) {
-        // The shell's own kill: no further package, no unsafe code.
-        let sent = Command::new("sh")
-            .args(["-c", r#"kill -s "$1" "$2""#, "sh", name])
-            .arg(self.child.id().to_string())
-            .status();
-        assert!(sent.is_ok_and(|s| s.success()), "kill -s {name}");
+        signal(self.child.id(), name);
     }
 
     /// Whether it has ended.
@@ -153,6 +148,16 @@ impl Drop for Running {
         let _ = self.child.kill();
         let _ = self.child.wait();
     }
+}
+
+/// Sends a process the signal of this name (`INT`, `TERM`).
+pub fn signal(process: u32, name: &str) {
+    // The shell's own kill: no further package, no unsafe code.
+    let sent = Command::new("sh")
+        .args(["-c", r#"kill -s "$1" "$2""#, "sh", name])
+        .arg(process.to_string())
+        .status();
+    assert!(sent.is_ok_and(|s| s.success()), "kill -s {name}");
 }
 
 /// `mouthpiece` with `args`, without standard input, display or log settings of this machine.

@@ -7,6 +7,8 @@
 //! | module | does |
 //! |---|---|
 //! | [`binary`] | finds and runs `mouthpiece`, with a deadline |
+//! | [`daemon`] | a running daemon: its socket, its health, its log |
+//! | [`screen`] | an X server of a test's own |
 //! | [`fixtures`] | the utterances in `fixtures/` |
 //! | [`curves`] | reads the table that `mouthpiece curves` writes |
 //! | [`mp4`] | walks the boxes of an MP4 |
@@ -23,9 +25,11 @@
 
 pub mod binary;
 pub mod curves;
+pub mod daemon;
 pub mod fixtures;
 pub mod mp4;
 pub mod picture;
+pub mod screen;
 pub mod wav;
 
 /// What a test needs of this machine; where it is not there, says why the test is skipped.

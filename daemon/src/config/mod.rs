@@ -41,7 +41,7 @@ pub use command::run;
 pub use drive::Drive;
 pub use health::Health;
 pub use life::Life;
-pub use log::Log;
+pub use log::{Level, Log};
 pub use look::Look;
 pub use sound::Sound;
 pub use source::Source;

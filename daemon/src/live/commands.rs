@@ -12,6 +12,7 @@ use tokio::task::JoinHandle;
 use super::address::Address;
 use super::client;
 use super::deadline;
+use super::faults;
 use super::player::{Handle, Player, Sight};
 use super::reload::{Current, Reload};
 use super::server::Server;
@@ -20,7 +21,7 @@ use super::sound::Choice;
 use super::source::Source;
 use super::speaker;
 use super::stop::Stop;
-use super::sync::{self, Flash};
+use super::sync::{self, Flash, Onsets};
 use super::window::{Display, Look, Wake};
 use crate::cli::{CastArgs, RunArgs, SayArgs, StageArgs};
 use crate::config::{self, Config};
@@ -50,7 +51,8 @@ pub fn run(args: &RunArgs) -> Result<()> {
     let door = net.block_on(config.health.http.open(None))?;
     net.spawn(ended_in_time(stop.clone(), address));
     let cast = cast(&config)?;
-    let (player, sight) = start(&cast, &config)?;
+    let onsets = args.test.then(Arc::<Onsets>::default);
+    let (player, sight) = start(&cast, &config, onsets.clone())?;
     net.spawn(service::tell(Arc::clone(&sight.vitals), stop.clone()));
     if let Some(door) = door {
         let vitals = Arc::clone(player.handle().vitals());
@@ -67,7 +69,11 @@ pub fn run(args: &RunArgs) -> Result<()> {
     let seen = match Display::open() {
         Ok(display) => {
             net.spawn(reload(Some(display.proxy())).watch(stop.clone()));
-            show(display, &net, &cast, sight, look, &stop, None, None)
+            if args.test {
+                net.spawn(faults::obey(display.proxy()));
+            }
+            let flash = onsets.map(Flash::of_onsets);
+            show(display, &net, &cast, sight, look, &stop, flash, None)
         }
         Err(error) => {
             net.spawn(reload(None).watch(stop.clone()));
@@ -149,7 +155,7 @@ fn perform(
 ) -> Result<()> {
     let look = Look::load(config)?;
     let cast = cast(config)?;
-    let (player, sight) = start(&cast, config)?;
+    let (player, sight) = start(&cast, config, None)?;
     let display = match Display::open() {
         Ok(display) => Some(display),
         Err(error) if player.has_sound() => {
@@ -230,14 +236,21 @@ fn cast(config: &Config) -> Result<Cast> {
     })
 }
 
-fn start(cast: &Cast, config: &Config) -> Result<(Player, Sight)> {
+fn start(cast: &Cast, config: &Config, onsets: Option<Arc<Onsets>>) -> Result<(Player, Sight)> {
     let choice = match config.sound.device.as_str() {
         "default" => Choice::Default,
         "none" => Choice::Silent,
         id => Choice::Id(id.to_owned()),
     };
     let look_ahead_ms = u16::try_from(config.sound.look_ahead_ms.get())?;
-    Player::start(cast, choice, &config.life, look_ahead_ms, &config.drive)
+    Player::start(
+        cast,
+        choice,
+        &config.life,
+        look_ahead_ms,
+        &config.drive,
+        onsets,
+    )
 }
 
 /// Sockets and control, on one thread: nothing real-time runs there. Whether SIGHUP `hangs_up`, that is, ends the process.

@@ -19,6 +19,7 @@ use std::time::Duration;
 use super::captions::Captions;
 use super::showing::Showing;
 use super::sound::Output;
+use super::sync::{Listening, Onsets};
 use super::time::Flow;
 use super::utterance::{Begin, Utterance};
 use super::vitals::{DeviceState, Vitals};
@@ -105,6 +106,7 @@ pub struct Conductor {
     look_ahead: i64,
     block: Vec<f32>,
     quit: bool,
+    listening: Option<Listening>,
     vitals: Arc<Vitals>,
 }
 
@@ -126,8 +128,14 @@ impl Conductor {
             look_ahead,
             block: vec![0.0; super::sound::BLOCK_TICKS],
             quit: false,
+            listening: None,
             vitals,
         }
+    }
+
+    /// Clicks in what is said make the picture flash.
+    pub fn listen(&mut self, onsets: Arc<Onsets>) {
+        self.listening = Some(Listening::new(onsets));
     }
 
     /// One turn: commands, clock, sound, news.
@@ -303,6 +311,9 @@ impl Conductor {
         }
         for sample in &mut self.block {
             *sample = sample.clamp(-1.0, 1.0);
+        }
+        if let Some(listening) = &mut self.listening {
+            listening.hear(at, &self.block);
         }
         self.output.push(&self.block);
     }

@@ -26,6 +26,7 @@ mod conductor;
 mod connection;
 mod deadline;
 mod face;
+mod faults;
 mod frames;
 mod motion;
 mod player;

@@ -22,6 +22,7 @@ use super::score::Score;
 use super::shots::Shots;
 use super::showing::Showing;
 use super::sound::{Choice, Output};
+use super::sync::Onsets;
 use super::time::{Origin, drive};
 use super::utterance::Begin;
 use super::vitals::Vitals;
@@ -66,13 +67,14 @@ pub struct Handle {
 
 impl Player {
     /// Starts both threads. `life` is what the face does by itself, `look_ahead_ms` how much of an utterance that is still
-    /// coming in must be there before it begins.
+    /// coming in must be there before it begins. `onsets` learn of clicks in what is said.
     pub fn start(
         cast: &Cast,
         choice: Choice,
         life: &config::Life,
         look_ahead_ms: u16,
         avatars: &Drive,
+        onsets: Option<Arc<Onsets>>,
     ) -> Result<(Self, Sight)> {
         let origin = Origin::new();
         let cell = Arc::new(ClockCell::default());
@@ -131,6 +133,9 @@ impl Player {
                 captions: written,
             };
             let mut conductor = Conductor::new(output, ends, speech, look_ahead, sound_vitals);
+            if let Some(onsets) = onsets {
+                conductor.listen(onsets);
+            }
             drive(|| conductor.step(origin.now_ns()));
         })?;
 

@@ -105,6 +105,7 @@ impl Reload {
             let keys = names(&live);
             tracing::info!(%keys, "the configuration has changed");
         }
+        crate::log::set_level(config.log.level);
         if let Some(window) = &self.window {
             // Closed already: the process is ending.
             let _ = window.send_event(Wake::Look(Box::new(look)));

@@ -29,17 +29,87 @@ pub struct Flash {
     /// First tick of the clicks' utterance, once it is known.
     pub start: Arc<AtomicI64>,
     clicks: Arc<[i64]>,
+    onsets: Option<Arc<Onsets>>,
 }
 
 impl Flash {
+    /// With whatever clicks are said, in any utterance.
+    pub fn of_onsets(onsets: Arc<Onsets>) -> Self {
+        Self {
+            start: Arc::new(AtomicI64::new(NOT_STARTED)),
+            clicks: Arc::default(),
+            onsets: Some(onsets),
+        }
+    }
+
     /// Whether the picture of `tick` flashes.
     pub fn is_lit(&self, tick: i64) -> bool {
+        if let Some(onsets) = &self.onsets {
+            return onsets.is_lit(tick);
+        }
         let start = self.start.load(Ordering::Acquire);
         let Some(local) = tick.checked_sub(start).filter(|_| start != NOT_STARTED) else {
             return false;
         };
         let next = self.clicks.partition_point(|c| *c <= local);
         next > 0 && local - self.clicks[next - 1] < FLASH_TICKS
+    }
+}
+
+/// Louder than this is a click, in what tests have a face say.
+const LOUD: f32 = 0.5;
+/// And it is a new one after so long without.
+const QUIET_TICKS: i64 = TICK_RATE / 5;
+/// Clicks that are remembered: more than are mixed ahead of the picture.
+const KEPT: usize = 8;
+
+/// Clicks in what is said, found while it is mixed: written by the sound thread, read by the one that draws.
+#[derive(Debug)]
+pub struct Onsets([AtomicI64; KEPT]);
+
+impl Default for Onsets {
+    fn default() -> Self {
+        Self(std::array::from_fn(|_| AtomicI64::new(NOT_STARTED)))
+    }
+}
+
+impl Onsets {
+    fn is_lit(&self, tick: i64) -> bool {
+        let started = self.0.iter().map(|o| o.load(Ordering::Acquire));
+        started
+            .filter(|o| *o != NOT_STARTED)
+            .any(|o| (0..FLASH_TICKS).contains(&(tick - o)))
+    }
+}
+
+/// The sound thread's end of [`Onsets`].
+#[derive(Debug)]
+pub struct Listening {
+    onsets: Arc<Onsets>,
+    next: usize,
+    loud: i64,
+}
+
+impl Listening {
+    pub fn new(onsets: Arc<Onsets>) -> Self {
+        Self {
+            onsets,
+            next: 0,
+            loud: i64::MIN / 2,
+        }
+    }
+
+    /// Takes in what is heard from tick `at` on.
+    pub fn hear(&mut self, at: i64, block: &[f32]) {
+        for (tick, sample) in (at..).zip(block) {
+            if sample.abs() > LOUD {
+                if tick - self.loud > QUIET_TICKS {
+                    self.onsets.0[self.next].store(tick, Ordering::Release);
+                    self.next = (self.next + 1) % KEPT;
+                }
+                self.loud = tick;
+            }
+        }
     }
 }
 
@@ -69,6 +139,7 @@ pub fn clicks(seconds: u32) -> Result<(Source, Flash)> {
     let flash = Flash {
         start: Arc::new(AtomicI64::new(NOT_STARTED)),
         clicks: clicks.into(),
+        onsets: None,
     };
     Ok((Source::of(segments, Some(sound))?, flash))
 }
@@ -76,6 +147,22 @@ pub fn clicks(seconds: u32) -> Result<(Source, Flash)> {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn clicks_in_what_is_said_flash_for_as_long() {
+        let onsets = Arc::new(Onsets::default());
+        let flash = Flash::of_onsets(Arc::clone(&onsets));
+        let mut listening = Listening::new(onsets);
+        let mut block = [0.1; 480];
+        block[100..300].fill(-0.7);
+        listening.hear(9_600, &block);
+        let from = 9_700;
+        let lit = [from - 1, from, from + FLASH_TICKS - 1, from + FLASH_TICKS];
+        assert_eq!(
+            lit.map(|tick| flash.is_lit(tick)),
+            [false, true, true, false]
+        );
+    }
 
     #[test]
     fn it_flashes_from_each_click_on_and_not_before_the_start_is_known() {

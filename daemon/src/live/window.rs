@@ -54,6 +54,8 @@ pub enum Wake {
     Quit,
     /// From the next picture on it looks like this.
     Look(Box<Look>),
+    /// The graphics device is to be lost, as a test of what comes then.
+    LoseDevice,
 }
 
 /// A connection to the display.
@@ -174,6 +176,11 @@ impl ApplicationHandler<Wake> for App {
         match wake {
             Wake::Quit => events.exit(),
             Wake::Look(look) => self.look(*look),
+            Wake::LoseDevice => {
+                if let Some(target) = self.open.as_ref().and_then(|o| o.target.as_ref()) {
+                    target.gpu().device().destroy();
+                }
+            }
         }
     }
 
