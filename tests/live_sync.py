@@ -24,6 +24,7 @@ played with the program under test; with a null sink there is no other truth.
 
 import argparse
 import array
+import bisect
 import ctypes
 import ctypes.util
 import json
@@ -190,7 +191,9 @@ def hear(connection, started):
 def offset_near(stamps, sample):
     """Time minus sound position around a sample: pieces arrive late, never early, so the least counts."""
     reach = ENVELOPE_S * RATE / 2
-    return min(t - n / RATE for t, n in stamps if abs(n - sample) < reach)
+    first = bisect.bisect_right(stamps, sample - reach, key=lambda stamp: stamp[1])
+    last = bisect.bisect_left(stamps, sample + reach, key=lambda stamp: stamp[1])
+    return min(t - n / RATE for t, n in stamps[first:last])
 
 
 class Ear:
