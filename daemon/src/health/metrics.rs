@@ -104,7 +104,9 @@ impl Figures {
         out.gauge("av_skew", help, Some(&Unit::Seconds), skew_s)?;
         let help = "The same of each picture, without its sign";
         out.spread("av_skew_absolute", help, &window.skews_ns)?;
-        let tier = window.tier().map_or(0.0, |tier| tier as u8 as f64 + 1.0);
+        let tier = window
+            .tier()
+            .map_or(0.0, |tier| f64::from(tier as u8) + 1.0);
         out.gauge(
             "tier",
             "What pictures are drawn in: 1 low, 2 medium, 3 high",

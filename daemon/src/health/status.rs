@@ -69,7 +69,7 @@ pub fn status(vitals: &Vitals, stall_ns: i64) -> Status {
         window: Window {
             pictures: window.presented.get(),
             pictures_per_second: window.per_second(now_ns),
-            tier: window.tier().map(|tier| tier.name()),
+            tier: window.tier().map(mouthpiece_render::Tier::name),
             skew_ms: window.skew_ns.get() as f64 * 1e-6,
             failures: window.failures.get(),
         },
