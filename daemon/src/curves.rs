@@ -11,8 +11,7 @@ use mouthpiece_rig::{Control, Measures, TICK_RATE, measure};
 use crate::avatar;
 use crate::cli::{CurvesArgs, Fps};
 use crate::input::Utterance;
-use crate::interrupt;
-use crate::media::output;
+use crate::media::text::TextOutput;
 use crate::pipeline::{Cast, Instant, Instants, Mood, Part};
 
 /// Names of what is measured, in order of the columns.
@@ -36,32 +35,27 @@ pub fn run(args: &CurvesArgs) -> anyhow::Result<()> {
         eprintln!("look-ahead of {ms} ms: {cost}");
     }
     let rate = args.rate;
-    // Both ends count: a second at 100 Hz is 101 rows.
-    let rows = (0..=rate.frames(utterance.ticks)).take_while({
-        let end = utterance.ticks;
-        move |&k| rate.ticks(k) <= end
-    });
-    let times = rows.map(move |k| rate.ticks(k));
+    let times = (0..rate.instants(utterance.ticks)).map(move |k| rate.ticks(k));
     let start = || Instants::start(cast.head.clone(), part, times);
     if let Some(avatar) = args.avatar {
         return avatar::write(avatar, args, &cast, &utterance, start);
     }
-    let instants = start()?;
     let json = args.json
         || args
             .output
             .as_deref()
             .is_some_and(|p| p.extension().is_some_and(|e| e == "json"));
-    let mut table = if json { Table::json() } else { Table::csv() };
-    let mut k = 0;
-    while let Some(instant) = instants.next() {
-        interrupt::check()?;
-        table.row(rate, k, &instant, &measure(&cast.head, &instant.frame));
-        instants.recycle(instant);
-        k += 1;
-    }
-    instants.finish()?;
-    output::write_or_print(args.output.as_deref(), &table.finish())
+    let table = Table::new(json);
+    let mut out = TextOutput::create(args.output.as_deref())?;
+    let mut text = table.header();
+    start()?.each(|k, instant| {
+        table.row(rate, k, instant, &measure(&cast.head, &instant.frame), &mut text);
+        let wanted = out.write(&text);
+        text.clear();
+        wanted
+    })?;
+    out.write(table.footer())?;
+    out.finish()
 }
 
 /// The columns' names.
@@ -76,34 +70,33 @@ fn columns() -> Vec<String> {
         .collect()
 }
 
-/// A table being written.
+/// How a table is written: as CSV, or as an array of JSON objects, one a row.
 struct Table {
     columns: Vec<String>,
     json: bool,
-    text: String,
 }
 
 impl Table {
-    fn csv() -> Self {
-        let columns = columns();
-        let text = columns.join(",") + "\n";
-        Self {
-            columns,
-            json: false,
-            text,
-        }
-    }
-
-    /// An array of objects, one a row.
-    fn json() -> Self {
+    fn new(json: bool) -> Self {
         Self {
             columns: columns(),
-            json: true,
-            text: "[".into(),
+            json,
         }
     }
 
-    fn row(&mut self, rate: Fps, k: u64, instant: &Instant, m: &Measures) {
+    fn header(&self) -> String {
+        match self.json {
+            true => "[".into(),
+            false => self.columns.join(",") + "\n",
+        }
+    }
+
+    const fn footer(&self) -> &'static str {
+        if self.json { "\n]\n" } else { "" }
+    }
+
+    /// Adds row `k` to `out`.
+    fn row(&self, rate: Fps, k: u64, instant: &Instant, m: &Measures, out: &mut String) {
         let time = k as f64 * f64::from(rate.den) / f64::from(rate.num);
         // Lips that touch have no gap, whatever the last bit of the float says.
         let measured = [
@@ -114,28 +107,20 @@ impl Table {
             m.lip_teeth_mm,
         ];
         let values = instant.controls.0.iter().chain(&measured);
-        let first = self.text.len() <= 1;
         if self.json {
-            self.text.push_str(if first { "\n{" } else { ",\n{" });
-            let _ = write!(self.text, "\"time_s\":{time:.6}");
+            out.push_str(if k == 0 { "\n{" } else { ",\n{" });
+            let _ = write!(out, "\"time_s\":{time:.6}");
             for (name, value) in self.columns[1..].iter().zip(values) {
-                let _ = write!(self.text, ",\"{name}\":{value:.5}");
+                let _ = write!(out, ",\"{name}\":{value:.5}");
             }
-            self.text.push('}');
+            out.push('}');
         } else {
-            let _ = write!(self.text, "{time:.6}");
+            let _ = write!(out, "{time:.6}");
             for value in values {
-                let _ = write!(self.text, ",{value:.5}");
+                let _ = write!(out, ",{value:.5}");
             }
-            self.text.push('\n');
+            out.push('\n');
         }
-    }
-
-    fn finish(mut self) -> String {
-        if self.json {
-            self.text.push_str("\n]\n");
-        }
-        self.text
     }
 }
 
@@ -156,13 +141,15 @@ mod tests {
             width_mm: 50.25,
             ..Measures::default()
         };
-        let mut csv = Table::csv();
-        let mut json = Table::json();
-        for k in 0..2 {
-            csv.row(fps, k, &Instant::default(), &measures);
-            json.row(fps, k, &Instant::default(), &measures);
-        }
-        let (csv, json) = (csv.finish(), json.finish());
+        let written = |json| {
+            let table = Table::new(json);
+            let mut text = table.header();
+            for k in 0..2 {
+                table.row(fps, k, &Instant::default(), &measures, &mut text);
+            }
+            text + table.footer()
+        };
+        let (csv, json) = (written(false), written(true));
         let rows: Vec<std::collections::BTreeMap<String, f64>> =
             serde_json::from_str(&json).unwrap();
         assert_eq!(rows.len(), 2);

@@ -5,6 +5,7 @@
 //! | [`wav`] | reads a user's sound file into 48 kHz mono |
 //! | [`resample`] | another rate to 48 kHz, without a shift |
 //! | [`output`] | files that appear whole or not at all |
+//! | [`text`] | rows of text as they come |
 //! | [`mp4`] | H.264 and Opus in MP4 |
 //! | [`frames`] | one PNG a frame, or raw frames to standard output |
 //! | [`ffmpeg`] | through the ffmpeg program of this machine |
@@ -19,6 +20,7 @@ pub mod hidden;
 pub mod mp4;
 pub mod output;
 pub mod resample;
+pub mod text;
 pub mod wav;
 pub mod yuv;
 

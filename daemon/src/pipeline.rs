@@ -19,6 +19,7 @@ use mouthpiece_rig::{
 use mouthpiece_speech::{Idle, Listener, LookAhead, Manner, Speech, State, Track};
 
 use crate::cli::{CastArgs, MoodArgs, Usage};
+use crate::interrupt;
 use cost::Cost;
 
 /// The head runs this long before the first instant, so that it is settled by then.
@@ -292,6 +293,24 @@ impl Instants {
     pub fn recycle(&self, instant: Instant) {
         // When there are enough already, this one goes.
         let _ = self.used.try_send(instant);
+    }
+
+    /// Gives each instant with its number to `take`, until that wants no more.
+    pub fn each(
+        self,
+        mut take: impl FnMut(u64, &Instant) -> anyhow::Result<bool>,
+    ) -> anyhow::Result<()> {
+        let mut k = 0;
+        while let Some(instant) = self.next() {
+            interrupt::check()?;
+            let wanted = take(k, &instant)?;
+            self.recycle(instant);
+            if !wanted {
+                return Ok(());
+            }
+            k += 1;
+        }
+        self.finish()
     }
 
     /// Waits for the thread; an error when it died instead of finishing.

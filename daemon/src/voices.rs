@@ -11,7 +11,7 @@
 //! | [`festival`] | festival, by a script in its own Scheme |
 //! | [`piper`] | Piper, by its Python package |
 //! | [`mod@align`] | no voice: finds the phones of a text in a recording, by pocketsphinx |
-//! | [`closure`] | gives silence before a burst to the stop that it belongs to |
+//! | [`closure`] | measures the silence before a burst, which is the stop's |
 //! | [`fit`] | makes labels end where the sound does |
 //! | [`refine`] | moves boundaries to where the sound changes |
 //! | [`rows`] | what our scripts print, as labels |
@@ -179,10 +179,11 @@ fn clean(text: &str) -> Result<String, VoiceError> {
     Ok(text)
 }
 
-/// What a voice of the Festival family printed, by the reader of its format.
+/// What an engine printed, by the reader of its format.
 fn read_labels(
     engine: &'static str,
     format: &dyn Reader,
+    alphabet: Alphabet,
     printed: &str,
 ) -> Result<Labels, VoiceError> {
     let source = Source {
@@ -190,7 +191,7 @@ fn read_labels(
         bytes: printed.as_bytes(),
     };
     let mut options = ReadOptions::default();
-    options.alphabet = Some(Alphabet::Radio);
+    options.alphabet = Some(alphabet);
     match format.read(&source, &options) {
         // Who said nothing has no labels; that is judged once for all engines.
         Err(LabelError::Empty { .. }) => Ok(Labels::default()),

@@ -30,7 +30,6 @@ use std::str::FromStr;
 
 use thiserror::Error;
 
-pub(crate) use features::distance;
 pub use join::{Timed, join, segments};
 
 use crate::{Phone, Stress};

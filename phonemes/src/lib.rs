@@ -12,6 +12,7 @@
 //! | `writer` | the same for writing |
 //! | [`timit`] | `.PHN` and `.WRD`, as files and as streams |
 //! | [`formats`] | the label formats of other programs, and our NDJSON |
+//! | `closure` | the silence before a burst as its stop's closure |
 //! | `check` | what is odd about labels that can be used |
 //! | `error` | what is wrong with those that cannot |
 //! | [`limits`] | how much a file or stream may ask for |
@@ -25,6 +26,7 @@
 
 pub mod alphabet;
 mod check;
+mod closure;
 mod error;
 pub mod formats;
 pub mod limits;
@@ -41,6 +43,7 @@ mod writer;
 
 pub use alphabet::{Alphabet, PhoneList, Spoken, UnknownAlphabet};
 pub use check::{Warning, check};
+pub use closure::close_before_bursts;
 pub use error::{Fault, LabelError, LineError};
 pub use nearest::nearest;
 pub use note::{Note, Notes};

@@ -1,6 +1,6 @@
 //! How written English sounds, and when each sound falls within its word.
 //!
-//! For sources that time only words or characters, as many cloud and neural voices do, and for
+//! For sources that time only words, as many cloud and neural voices do, and for
 //! words that an aligner's dictionary lacks. A word is looked up in a dictionary of the user's, in
 //! the common words built in, as a word of those with an ending or as two of them, and spelled by
 //! rule last; all of it is American English. The phones then share their word's time by the
@@ -18,9 +18,7 @@
 //! | `scripts` | letters that English does not have |
 //! | `durations` | how long each phone takes |
 //! | `spread` | phones within the times of words |
-//! | `characters` | phones within the times of characters |
 
-mod characters;
 mod durations;
 mod endings;
 mod letters;
@@ -31,9 +29,7 @@ mod spread;
 mod stress;
 mod text;
 
-pub use characters::Character;
-
-use crate::{Labels, Note, Phone, Segment, Stress, Word};
+use crate::{Note, Phone, Segment, Stress, Word};
 use lexicon::Lexicon;
 
 /// A phone as it is said.
@@ -83,15 +79,13 @@ impl Pronouncer {
             return said;
         }
         let mut said: Vec<Said> = Vec::new();
-        for (_, phones) in letters::sounds(word) {
-            for one in phones {
-                // The rules give `ar` of "vinegar" both its vowel and an r.
-                let after_er = said
-                    .last()
-                    .is_some_and(|s| matches!(s.0, Phone::Er | Phone::Axr));
-                if one.0 != Phone::R || !after_er {
-                    said.push(one);
-                }
+        for one in letters::sounds(word) {
+            // The rules give `ar` of "vinegar" both its vowel and an r.
+            let after_er = said
+                .last()
+                .is_some_and(|s| matches!(s.0, Phone::Er | Phone::Axr));
+            if one.0 != Phone::R || !after_er {
+                said.push(one);
             }
         }
         stress::settle(&mut said);
@@ -103,11 +97,6 @@ impl Pronouncer {
     pub fn spread(&self, words: &[Word]) -> Vec<Segment> {
         spread::spread(self, words)
     }
-
-    /// The words and phones of characters whose times are known, as ElevenLabs gives them.
-    pub fn spread_characters(&self, characters: &[Character]) -> Labels {
-        characters::labelled(self, characters)
-    }
 }
 
 /// [`Pronouncer::pronounce`] with the words built in.
@@ -118,9 +107,4 @@ pub fn pronounce(token: &str) -> Vec<Said> {
 /// [`Pronouncer::spread`] with the words built in.
 pub fn spread(words: &[Word]) -> Vec<Segment> {
     Pronouncer::new().spread(words)
-}
-
-/// [`Pronouncer::spread_characters`] with the words built in.
-pub fn spread_characters(characters: &[Character]) -> Labels {
-    Pronouncer::new().spread_characters(characters)
 }

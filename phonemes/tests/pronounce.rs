@@ -6,7 +6,7 @@ mod material;
 use std::path::Path;
 use std::sync::Arc;
 
-use mouthpiece_phonemes::pronounce::{Character, Pronouncer, Said, spread_characters};
+use mouthpiece_phonemes::pronounce::{Pronouncer, Said};
 use mouthpiece_phonemes::{
     Phone, ReadOptions, Segment, Source, Stress, TICK_RATE, Word, pronounce, read, read_file,
     spread,
@@ -139,41 +139,6 @@ fn phones_fill_their_words_and_no_more() {
     assert!(at(Phone::Aa).duration() > segments[0].duration());
 }
 
-/// Characters of equal length, `ticks` each.
-fn typed(text: &str, ticks: i64) -> Vec<Character> {
-    let each = (0..).zip(text.chars()).map(|(at, text)| Character {
-        text,
-        start: at * ticks,
-        end: (at + 1) * ticks,
-    });
-    each.collect()
-}
-
-#[test]
-fn phones_begin_with_the_letters_that_write_them() {
-    let labels = spread_characters(&typed("The ship's made. 42", 1000));
-    let words: Vec<&str> = labels.words.iter().map(|w| w.text.as_str()).collect();
-    assert_eq!(words, ["The", "ship's", "made", "42"]);
-    assert_eq!(
-        shown(&labels.segments[..9]),
-        "dh 0-2000, ax 2000-3000, sh 4000-6000, ih 6000-7000, p 7000-9000, s 9000-10000, \
-         m 11000-12000, ey 12000-13000, d 13000-15000"
-    );
-    // The full stop is silent; a number has all of its own time.
-    assert_eq!(labels.segments[9].start, 17_000);
-    assert_eq!(labels.segments.last().unwrap().end, 19_000);
-}
-
-#[test]
-fn phones_of_one_letter_share_its_time() {
-    let labels = spread_characters(&typed("box", 3000));
-    let parts: Vec<&str> = labels.segments.iter().map(|s| s.phone.code()).collect();
-    assert_eq!(parts, ["b", "aa", "k", "s"]);
-    let (k, s) = (labels.segments[2], labels.segments[3]);
-    assert_eq!((k.start, s.end), (6000, 9000));
-    assert_eq!(k.end, s.start);
-}
-
 /// Words and phones that an aligner found in a recording: when only the words are given, phones
 /// must fall near to where it heard them.
 #[test]
@@ -285,24 +250,6 @@ proptest! {
         for segment in &segments {
             prop_assert!(segment.start < segment.end);
             prop_assert!(words.iter().any(|w| w.start <= segment.start && segment.end <= w.end));
-        }
-    }
-
-    #[test]
-    fn any_characters_at_any_times_give_phones_in_order(
-        characters in prop::collection::vec((prop::sample::select("ab eioxpst'.-$7é東м,\n".chars().collect::<Vec<_>>()), -5_i64..3000, -3_i64..2000), 0..40),
-    ) {
-        let mut at = 0;
-        let characters: Vec<Character> = characters.iter().map(|(text, step, ticks)| {
-            at += step;
-            Character { text: *text, start: at, end: at + ticks }
-        }).collect();
-        let labels = spread_characters(&characters);
-        for pair in labels.segments.windows(2) {
-            prop_assert!(pair[0].end <= pair[1].start);
-        }
-        for segment in &labels.segments {
-            prop_assert!(segment.start < segment.end);
         }
     }
 

@@ -163,8 +163,6 @@ impl Reader {
 pub struct Table {
     reader: Reader,
     rate: Fps,
-    frames: u64,
-    text: String,
 }
 
 impl Table {
@@ -172,30 +170,27 @@ impl Table {
         Ok(Self {
             reader: Reader::new(head)?,
             rate,
-            frames: 0,
-            text: String::new(),
         })
     }
 }
 
 impl Rows for Table {
-    fn row(&mut self, k: u64, frame: &KeyFrame) {
-        let given = |number| PARAMETERS.iter().any(|(known, ..)| *known == number);
-        for number in 1..=COUNT {
-            self.text.push(if given(number) { '1' } else { '0' });
-            self.text.push(if number < COUNT { ' ' } else { '\n' });
-        }
-        let _ = write!(self.text, "{k}");
-        for value in self.reader.values(frame) {
-            let _ = write!(self.text, " {value}");
-        }
-        self.text.push('\n');
-        self.frames += 1;
+    fn header(&self, rows: u64) -> String {
+        let rate = f64::from(self.rate.num) / f64::from(self.rate.den);
+        format!("2.1 mouthpiece {rate} {rows}\n")
     }
 
-    fn finish(self: Box<Self>) -> String {
-        let rate = f64::from(self.rate.num) / f64::from(self.rate.den);
-        format!("2.1 mouthpiece {rate} {}\n{}", self.frames, self.text)
+    fn row(&mut self, k: u64, frame: &KeyFrame, out: &mut String) {
+        let given = |number| PARAMETERS.iter().any(|(known, ..)| *known == number);
+        for number in 1..=COUNT {
+            out.push(if given(number) { '1' } else { '0' });
+            out.push(if number < COUNT { ' ' } else { '\n' });
+        }
+        let _ = write!(out, "{k}");
+        for value in self.reader.values(frame) {
+            let _ = write!(out, " {value}");
+        }
+        out.push('\n');
     }
 }
 
@@ -228,9 +223,9 @@ mod tests {
     #[test]
     fn nothing_moves_at_rest_and_each_frame_says_what_it_gives() {
         let head = Arc::new(Head::reference().unwrap());
-        let mut table = Box::new(Table::new(&head, Fps { num: 25, den: 1 }).unwrap());
-        table.row(0, &head.rest_frame());
-        let text = table.finish();
+        let mut table = Table::new(&head, Fps { num: 25, den: 1 }).unwrap();
+        let mut text = table.header(1);
+        table.row(0, &head.rest_frame(), &mut text);
         let lines: Vec<_> = text.lines().collect();
         assert_eq!(lines.len(), 3);
         assert_eq!(lines[0], "2.1 mouthpiece 25 1");

@@ -22,15 +22,15 @@ pub mod vrm;
 
 use crate::cli::{AvatarArg, CurvesArgs, Fps, StateArg, Usage};
 use crate::input::Utterance;
-use crate::interrupt;
-use crate::media::output;
+use crate::media::text::TextOutput;
 use crate::pipeline::{Cast, Instants};
 
 /// A writer of one row an instant.
 trait Rows {
-    fn row(&mut self, k: u64, frame: &mouthpiece_rig::KeyFrame);
-    /// All of it.
-    fn finish(self: Box<Self>) -> String;
+    /// What stands before so many rows.
+    fn header(&self, rows: u64) -> String;
+    /// Adds row `k` to `out`.
+    fn row(&mut self, k: u64, frame: &mouthpiece_rig::KeyFrame, out: &mut String);
 }
 
 /// Writes what `instants` give, for the avatar that is asked for.
@@ -47,25 +47,25 @@ pub fn write(
     }
     refuse_what_has_no_effect(avatar, args)?;
     let rate = args.rate;
+    let count = rate.instants(utterance.ticks);
+    let mut out = TextOutput::create(args.output.as_deref())?;
     let mut rows: Box<dyn Rows> = match avatar {
         AvatarArg::Oculus => {
             let track = cast.speech.track(&utterance.segments);
-            let text = visemes::table(track.segments(), rate, utterance.ticks);
-            return output::write_or_print(args.output.as_deref(), &text);
+            visemes::write(track.segments(), rate, count, &mut out)?;
+            return out.finish();
         }
         AvatarArg::Arkit => Box::new(recording::Table::new(&cast.head, rate)),
         AvatarArg::Fap => Box::new(fap::Table::new(&cast.head, rate)?),
     };
-    let instants = instants()?;
-    let mut k = 0;
-    while let Some(instant) = instants.next() {
-        interrupt::check()?;
-        rows.row(k, &instant.frame);
-        instants.recycle(instant);
-        k += 1;
-    }
-    instants.finish()?;
-    output::write_or_print(args.output.as_deref(), &rows.finish())
+    let mut text = rows.header(count);
+    instants()?.each(|k, instant| {
+        rows.row(k, &instant.frame, &mut text);
+        let wanted = out.write(&text);
+        text.clear();
+        wanted
+    })?;
+    out.finish()
 }
 
 /// Options that would silently change nothing.

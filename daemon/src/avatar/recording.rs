@@ -18,36 +18,34 @@ use crate::cli::Fps;
 pub struct Table {
     reader: Reader,
     rate: Fps,
-    text: String,
 }
 
 impl Table {
     pub fn new(head: &Arc<Head>, rate: Fps) -> Self {
-        let names: Vec<_> = arkit::names().chain(ANGLES).collect();
         Self {
             reader: Reader::new(head),
             rate,
-            text: format!("Timecode,BlendshapeCount,{}\n", names.join(",")),
         }
     }
 }
 
 impl Rows for Table {
-    fn row(&mut self, k: u64, frame: &KeyFrame) {
+    fn header(&self, _rows: u64) -> String {
+        let names: Vec<_> = arkit::names().chain(ANGLES).collect();
+        format!("Timecode,BlendshapeCount,{}\n", names.join(","))
+    }
+
+    fn row(&mut self, k: u64, frame: &KeyFrame, out: &mut String) {
         let face = self.reader.face(frame);
         let values = arkit::shapes(&face)
             .into_iter()
             .chain(arkit::angles(face.is));
         let count = arkit::COUNT + ANGLES.len();
-        let _ = write!(self.text, "{},{count}", timecode(self.rate, k));
+        let _ = write!(out, "{},{count}", timecode(self.rate, k));
         for value in values {
-            let _ = write!(self.text, ",{value:.6}");
+            let _ = write!(out, ",{value:.6}");
         }
-        self.text.push('\n');
-    }
-
-    fn finish(self: Box<Self>) -> String {
-        self.text
+        out.push('\n');
     }
 }
 
@@ -58,9 +56,9 @@ mod tests {
     #[test]
     fn columns_are_those_of_live_link_face() {
         let head = Arc::new(Head::reference().unwrap());
-        let mut table = Box::new(Table::new(&head, Fps { num: 60, den: 1 }));
-        table.row(61, &head.rest_frame());
-        let text = table.finish();
+        let mut table = Table::new(&head, Fps { num: 60, den: 1 });
+        let mut text = table.header(1);
+        table.row(61, &head.rest_frame(), &mut text);
         let (header, row) = text.split_once('\n').unwrap();
         let names: Vec<_> = header.split(',').collect();
         assert_eq!(names.len(), 2 + 52 + 9);

@@ -10,6 +10,8 @@ use std::fmt::Write as _;
 use mouthpiece_phonemes::{Class, Phone, Segment};
 
 use crate::cli::Fps;
+use crate::interrupt;
+use crate::media::text::TextOutput;
 
 /// The visemes in the order of their numbers there.
 pub const NAMES: [&str; 15] = [
@@ -225,21 +227,29 @@ fn weights(held: &[Held], ticks: i64) -> [f64; 15] {
     weights
 }
 
-/// A row an instant: the time and a weight per viseme.
-pub fn table(segments: &[Segment], rate: Fps, ticks: i64) -> String {
+/// A row an instant, so many `rows`: the time and a weight per viseme.
+pub fn write(
+    segments: &[Segment],
+    rate: Fps,
+    rows: u64,
+    out: &mut TextOutput,
+) -> anyhow::Result<()> {
     let held = held(segments);
     let mut text = format!("time_s,{}\n", NAMES.join(","));
-    let mut k = 0;
-    while rate.ticks(k) <= ticks {
+    for k in 0..rows {
+        interrupt::check()?;
         let time = k as f64 * f64::from(rate.den) / f64::from(rate.num);
         let _ = write!(text, "{time:.6}");
         for weight in weights(&held, rate.ticks(k)) {
             let _ = write!(text, ",{weight:.5}");
         }
         text.push('\n');
-        k += 1;
+        if !out.write(&text)? {
+            break;
+        }
+        text.clear();
     }
-    text
+    Ok(())
 }
 
 #[cfg(test)]

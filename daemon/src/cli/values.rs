@@ -74,6 +74,12 @@ impl Fps {
         u64::try_from(frames).unwrap_or(u64::MAX)
     }
 
+    /// How many instants there are from 0 to `ticks`, both ends counted: a second at 100 Hz has 101.
+    pub fn instants(self, ticks: i64) -> u64 {
+        let last = self.frames(ticks);
+        last + u64::from(self.ticks(last) <= ticks)
+    }
+
     fn new(num: u32, den: u32) -> Option<Self> {
         let ok =
             num >= den && den > 0 && u64::from(num) <= u64::from(den) * u64::from(Self::HZ_MAX);
@@ -241,6 +247,8 @@ mod tests {
             let n = fps.frames(ticks);
             assert!(fps.ticks(n) >= ticks);
             assert!(n == 0 || fps.ticks(n - 1) < ticks);
+            let n = fps.instants(ticks);
+            assert!(fps.ticks(n - 1) <= ticks && fps.ticks(n) > ticks);
         }
     }
 

@@ -1,11 +1,9 @@
-//! Gives the silence before a burst to the stop that it belongs to.
+//! Measures the silence before a burst, for [`close_before_bursts`].
 //!
-//! espeak-ng stamps /p t k/ and affricates, and many a /b d g/, at the burst: the 20 to 60 ms of
-//! digital silence before it, in which lips or tongue are closed, stand under the name of the phone
-//! before. TIMIT has a label of its own for them, so that is what they become. A stop whose closure is
-//! voiced keeps its one label; speech parts that itself.
+//! espeak-ng stamps /p t k/ and affricates, and many a /b d g/, at the burst, after 20 to 60 ms of
+//! digital silence. A stop whose closure is voiced keeps its one label; speech parts that itself.
 
-use mouthpiece_phonemes::Segment;
+use mouthpiece_phonemes::{Segment, close_before_bursts};
 
 /// What still counts as silence: digital silence, with what our resampler's filter adds at its edges.
 const SILENCE: f32 = 0.002;
@@ -14,7 +12,7 @@ const SILENCE: f32 = 0.002;
 const EDGE_TICKS: usize = 96;
 
 /// Less silence than this is the gap between two periods of a voice: 12 ms.
-const CLOSURE_TICKS_MIN: usize = 576;
+const CLOSURE_TICKS_MIN: i64 = 576;
 
 /// More than this is a pause, of which the closure is the end: 60 ms, the longest closure that
 /// espeak-ng makes within a phrase.
@@ -22,33 +20,10 @@ const CLOSURE_TICKS_MAX: usize = 2880;
 
 /// The same segments, with the silence before each release as its closure.
 pub fn split(segments: &[Segment], sound: &[f32]) -> Vec<Segment> {
-    let mut out: Vec<Segment> = Vec::with_capacity(segments.len() * 2);
-    for segment in segments {
-        let silent = silence_before(sound, segment.start);
-        if let Some(phone) = segment.phone.closure()
-            && silent >= CLOSURE_TICKS_MIN as i64
-            && !out.last().is_some_and(|last| last.phone.is_closure())
-        {
-            let mut start = segment.start - silent;
-            // What it is taken from keeps some of its time.
-            if let Some(last) = out.last_mut() {
-                start = start.max(last.start + last.duration() / 4);
-                last.end = last.end.min(start);
-            }
-            out.push(Segment {
-                phone,
-                start,
-                end: segment.start,
-                stress: segment.stress,
-            });
-        }
-        out.push(*segment);
-    }
-    out.retain(|s| s.end > s.start);
-    out
+    close_before_bursts(segments, |segment| silence_before(sound, segment.start))
 }
 
-/// Ticks of silence that end at tick `at`, as far as a closure lasts.
+/// Ticks of silence that end at tick `at`, as far as a closure lasts; 0 for less than one.
 fn silence_before(sound: &[f32], at: i64) -> i64 {
     let end = usize::try_from(at).unwrap_or(0).min(sound.len());
     let before = sound.get(..end).unwrap_or(&[]);
@@ -56,10 +31,12 @@ fn silence_before(sound: &[f32], at: i64) -> i64 {
     let within = &before[..before.len() - edge.len()];
     let silent = within.iter().rev().take(CLOSURE_TICKS_MAX - EDGE_TICKS);
     let silent = silent.take_while(|x| x.abs() <= SILENCE).count();
-    if silent == 0 {
-        return 0;
+    let closed = (silent + edge.len()) as i64;
+    if silent > 0 && closed >= CLOSURE_TICKS_MIN {
+        closed
+    } else {
+        0
     }
-    (silent + edge.len()) as i64
 }
 
 #[cfg(test)]

@@ -6,7 +6,7 @@
 
 use std::process::Command;
 
-use mouthpiece_phonemes::{Labels, formats};
+use mouthpiece_phonemes::{Alphabet, Labels, formats};
 
 use super::error::VoiceError;
 use super::{Engine, child, patience, read_labels, script};
@@ -77,7 +77,7 @@ fn string(text: &str) -> String {
 
 /// Reads saved segments.
 fn labels(text: &str) -> Result<Labels, VoiceError> {
-    read_labels(NAME, &formats::Xlabel, text)
+    read_labels(NAME, &formats::Xlabel, Alphabet::Radio, text)
 }
 
 #[cfg(test)]

@@ -9,7 +9,7 @@ use std::path::Path;
 use std::process::Command;
 use std::time::Duration;
 
-use mouthpiece_phonemes::{Labels, formats};
+use mouthpiece_phonemes::{Alphabet, Labels, formats};
 
 use super::error::VoiceError;
 use super::{Engine, child, patience, read_labels, script};
@@ -77,7 +77,7 @@ fn voices() -> Result<Vec<String>, VoiceError> {
 
 /// Reads what `-psdur` printed.
 fn labels(printed: &str) -> Result<Labels, VoiceError> {
-    read_labels(NAME, &formats::Flite, printed)
+    read_labels(NAME, &formats::Flite, Alphabet::Radio, printed)
 }
 
 #[cfg(test)]

@@ -176,39 +176,6 @@ pub(super) fn closest(sound: Sound) -> Phone {
         .map_or(Phone::Ax, |(_, phone)| *phone)
 }
 
-/// How phones differ to the eye and ear; those outside the table by what they resemble.
-pub(crate) fn distance(one: Phone, other: Phone) -> i16 {
-    if one == other {
-        return 0;
-    }
-    // Twins, such as a closure and its stop, are one step apart.
-    1 + apart(of(one), of(other))
-}
-
-/// How a phone is made: its row, or that of the phone that it is a kind of.
-fn of(phone: Phone) -> Sound {
-    let kin = match phone {
-        Phone::Aw | Phone::Ay => Phone::Aa,
-        Phone::Oy => Phone::Ao,
-        Phone::Axr => Phone::Er,
-        Phone::AxH => Phone::Ax,
-        Phone::El => Phone::L,
-        Phone::Em => Phone::M,
-        Phone::En | Phone::Nx => Phone::N,
-        Phone::Eng => Phone::Ng,
-        Phone::Bcl => Phone::B,
-        Phone::Dcl => Phone::D,
-        Phone::Gcl => Phone::G,
-        Phone::Pcl => Phone::P,
-        Phone::Tcl => Phone::T,
-        Phone::Kcl => Phone::K,
-        Phone::Q | Phone::Pau | Phone::Epi | Phone::HSharp => Phone::Hh,
-        other => other,
-    };
-    let row = PHONES.iter().find(|(phone, _)| *phone == kin);
-    row.map_or(vowel(3, 2, 0), |(_, sound)| *sound)
-}
-
 /// A vowel and a consonant are further apart than any two vowels or consonants, but for glides.
 const OTHER_KIND: i16 = 60;
 

@@ -6,16 +6,17 @@
 //! where its rate can be told from both.
 //!
 //! espeak-ng stamps /p t k/ and `tS` at the burst, and leaves the 39 to 49 ms of silence before it,
-//! in which lips or tongue are closed, to the phone before. Here that silence is the stop's own
-//! closure: 44 ms, or half of the phone before where that is shorter.
+//! in which lips or tongue are closed, to the phone before. Here that silence, 44 ms, is the stop's
+//! own closure.
 
-use super::sheet::{Piece, Said, Sheet};
+use super::sheet::{Piece, Sheet};
 use super::text::{decode, lines, peek, wrong};
 use super::time::{Time, Unit};
 use crate::alphabet::Alphabet;
+use crate::closure::close_before_bursts;
 use crate::error::{Fault, LabelError};
 use crate::reader::{Match, ReadOptions, Reader, Source};
-use crate::{Labels, Phone};
+use crate::{Labels, Phone, Segment};
 
 /// The format.
 #[derive(Clone, Copy, Debug)]
@@ -71,43 +72,31 @@ impl Reader for Espeak {
                 starts.push((*number, at, event.value));
             }
         }
-        let mut last_start = Time::ZERO;
         for (index, (number, at, symbol)) in starts.iter().enumerate() {
             let refuse = |fault| wrong(source, *number, fault);
-            let closes = closure(symbol, last_start, *at);
-            if let Some((phone, from)) = closes {
-                let piece = Piece::saying(Said::Phone(phone), from, *at, *number);
-                sheet.phone(piece.map_err(refuse)?)?;
-            }
             let end = match starts.get(index + 1) {
-                Some((_, next, symbol)) => {
-                    closure(symbol, *at, *next).map_or(*next, |(_, from)| from)
-                }
+                Some((_, next, _)) => *next,
                 None if over > *at || symbol.starts_with('_') => over,
                 None => at.plus(LAST).map_err(refuse)?,
             };
-            last_start = *at;
             // A sentence's end is a pause that lasts no time.
             if end != *at || !symbol.starts_with('_') {
                 let piece = Piece::new((*symbol).to_owned(), *at, end, *number);
                 sheet.phone(piece.map_err(refuse)?)?;
             }
         }
-        sheet.finish(options, Some(Alphabet::Espeak), EXAMPLE)
+        let mut labels = sheet.finish(options, Some(Alphabet::Espeak), EXAMPLE)?;
+        labels.segments = close_before_bursts(&labels.segments, silence);
+        Ok(labels)
     }
 }
 
-/// The closure that belongs to a phone whose burst is at `burst`, and where it begins; `last` is
-/// where the phone before it began.
-fn closure(symbol: &str, last: Time, burst: Time) -> Option<(Phone, Time)> {
-    let phone = match symbol {
-        "p" => Phone::Pcl,
-        "t" | "tS" => Phone::Tcl,
-        "k" => Phone::Kcl,
-        _ => return None,
-    };
-    let from = burst.minus(CLOSURE).max(last.middle(burst));
-    (from < burst).then_some((phone, from))
+/// The silence that usually stands before a phone's burst.
+fn silence(segment: &Segment) -> i64 {
+    match segment.phone {
+        Phone::P | Phone::T | Phone::K | Phone::Ch => CLOSURE.ticks(),
+        _ => 0,
+    }
 }
 
 /// One event.

@@ -98,11 +98,6 @@ impl Time {
         Self(self.0.saturating_sub(other.0))
     }
 
-    /// The middle between the two.
-    pub(super) const fn middle(self, other: Self) -> Self {
-        Self(self.0.midpoint(other.0))
-    }
-
     /// The nearest tick, halves upwards.
     pub(super) fn ticks(self) -> i64 {
         let ticks = 2 * i128::from(self.0) * i128::from(TICK_RATE) + PER_SECOND;

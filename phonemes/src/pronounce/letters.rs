@@ -19,17 +19,14 @@ const ORDER: [isize; 9] = [1, -1, 2, -2, 3, -3, 4, -4, 5];
 /// Where there is no neighbour.
 const EDGE: u8 = b'-';
 
-/// What each letter of a word sounds like, with the letter's place among the word's characters.
-/// Letters of other scripts sound as they do there, roughly; what is no letter is silent.
-pub(super) fn sounds(word: &str) -> Vec<(usize, Vec<Said>)> {
-    let (plain, places) = scripts::plain(word);
-    let mut sounds = Vec::with_capacity(places.len());
-    for (at, place) in places.into_iter().enumerate() {
-        match plain[at] {
-            scripts::Plain::English(_) => sounds.push((place, sound(&plain, at))),
-            scripts::Plain::Other(phones) => {
-                sounds.push((place, phones.iter().map(|p| (*p, None)).collect()));
-            }
+/// What a word sounds like, letter by letter. Letters of other scripts sound as they do there, roughly; what is no letter is silent.
+pub(super) fn sounds(word: &str) -> Vec<Said> {
+    let plain = scripts::plain(word);
+    let mut sounds = Vec::with_capacity(plain.len());
+    for (at, letter) in plain.iter().enumerate() {
+        match letter {
+            scripts::Plain::English(_) => sounds.extend(sound(&plain, at)),
+            scripts::Plain::Other(phones) => sounds.extend(phones.iter().map(|p| (*p, None))),
         }
     }
     sounds

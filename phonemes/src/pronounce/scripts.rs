@@ -85,18 +85,15 @@ const MORE: [(char, &[Phone]); 2] = [('ю', &[Phone::Y, Phone::Uw]), ('я', &[Ph
 /// A syllable that says nothing of the lips.
 const SYLLABLE: [Phone; 2] = [Phone::D, Phone::Ah];
 
-/// The word's letters in order, and the place of each among its characters.
-pub(super) fn plain(word: &str) -> (Vec<Plain>, Vec<usize>) {
+/// The word's letters in order.
+pub(super) fn plain(word: &str) -> Vec<Plain> {
     let mut letters = Vec::new();
-    let mut places = Vec::new();
-    for (place, c) in word.chars().take(WORD_CHARS_MAX).enumerate() {
-        let before = letters.len();
+    for c in word.chars().take(WORD_CHARS_MAX) {
         for c in c.to_lowercase() {
             add(c, &mut letters);
         }
-        places.resize(places.len() + letters.len() - before, place);
     }
-    (letters, places)
+    letters
 }
 
 fn add(c: char, letters: &mut Vec<Plain>) {

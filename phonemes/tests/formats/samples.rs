@@ -189,9 +189,9 @@ fn pipers_signs_join_to_phones() {
 #[test]
 fn espeaks_silence_before_a_burst_is_the_stops_closure() {
     let labels = sample("espeak-events/copy.tsv");
-    // Samples at 22050 Hz are finer than milliseconds; 44 ms before each burst, or half of what is
-    // before it.
-    let wanted = "5 kcl 10, 10 k 60, 60 aa 156, 156 pcl 200, 200 p 240, 240 iy 400, 400 pau 600";
+    // Samples at 22050 Hz are finer than milliseconds; 44 ms before each burst, or as much as
+    // there is.
+    let wanted = "0 kcl 10, 10 k 60, 60 aa 156, 156 pcl 200, 200 p 240, 240 iy 400, 400 pau 600";
     assert_eq!(phones(&labels), wanted);
     assert_eq!(labels.segments.last().unwrap().end, 600 * 48);
 }

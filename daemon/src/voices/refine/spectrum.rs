@@ -2,6 +2,8 @@
 
 use std::f32::consts::TAU;
 
+use realfft::RealFftPlanner;
+
 /// From frame to frame: 5 ms.
 pub const HOP_TICKS: i64 = 240;
 
@@ -49,57 +51,30 @@ pub fn bands(sound: &[f32]) -> Vec<Frame> {
     let window: Vec<f32> = (0..SIZE)
         .map(|i| 0.5 - 0.5 * (TAU * i as f32 / SIZE as f32).cos())
         .collect();
-    let turns: Vec<(f32, f32)> = (0..SIZE / 2)
-        .map(|k| (-TAU * k as f32 / SIZE as f32).sin_cos())
-        .map(|(sin, cos)| (cos, sin))
-        .collect();
+    let transform = RealFftPlanner::new().plan_fft_forward(SIZE);
+    let (mut input, mut output) = (transform.make_input_vec(), transform.make_output_vec());
+    let mut scratch = transform.make_scratch_vec();
     let hop = HOP_TICKS as usize;
     let count = (sound.len() + hop / 2) / hop;
-    let mut work = vec![(0.0, 0.0); SIZE];
     let frame = |number: usize| {
         let first = (number * hop + hop / 2) as i64 - (SIZE / 2) as i64;
-        for (i, (slot, w)) in (first..).zip(work.iter_mut().zip(&window)) {
+        for (i, (slot, w)) in (first..).zip(input.iter_mut().zip(&window)) {
             let x = usize::try_from(i).ok().and_then(|i| sound.get(i)).copied();
-            *slot = (x.unwrap_or(0.0) * FULL_SCALE * w, 0.0);
+            *slot = x.unwrap_or(0.0) * FULL_SCALE * w;
         }
-        transform(&mut work, &turns);
+        // It fails only on buffers of another length.
+        let done = transform.process_with_scratch(&mut input, &mut output, &mut scratch);
+        debug_assert!(done.is_ok());
         EDGES.map(|(low, high)| {
             let (a, b) = (
                 low * SIZE / 48_000,
                 (high * SIZE / 48_000).max(low * SIZE / 48_000 + 1),
             );
-            let power: f32 = work[a..b].iter().map(|(re, im)| re * re + im * im).sum();
+            let power: f32 = output[a..b].iter().map(|bin| bin.norm_sqr()).sum();
             (power / (SIZE * SIZE) as f32 + 1e-9).log10().max(FLOOR)
         })
     };
     (0..count).map(frame).collect()
-}
-
-/// The discrete Fourier transform in place: radix 2, `turns` the roots of one.
-fn transform(data: &mut [(f32, f32)], turns: &[(f32, f32)]) {
-    let bits = data.len().trailing_zeros();
-    for i in 0..data.len() {
-        let j = i.reverse_bits() >> (usize::BITS - bits);
-        if i < j {
-            data.swap(i, j);
-        }
-    }
-    let mut half = 1;
-    while half < data.len() {
-        let stride = data.len() / (2 * half);
-        for block in data.chunks_exact_mut(2 * half) {
-            let (even, odd) = block.split_at_mut(half);
-            for (k, (a, b)) in even.iter_mut().zip(odd).enumerate() {
-                let (cos, sin) = turns[k * stride];
-                let turned = (b.0 * cos - b.1 * sin, b.0 * sin + b.1 * cos);
-                (*a, *b) = (
-                    (a.0 + turned.0, a.1 + turned.1),
-                    (a.0 - turned.0, a.1 - turned.1),
-                );
-            }
-        }
-        half *= 2;
-    }
 }
 
 #[cfg(test)]
