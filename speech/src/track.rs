@@ -253,6 +253,7 @@ impl Track {
         {
             self.lay(last.end, start, voice.sound(Phone::HSharp).posture, 1.0);
         }
+        let start = breathed(&voice, last, segment).unwrap_or(start);
         let sound = voice.sound(phone);
         let scale = voicing::scale(&voice, &segment);
         if let Some(closure) = missing_closure(&voice, last, segment) {
@@ -288,6 +289,13 @@ impl Track {
             ..Piece::new(start, end, edge, index)
         });
     }
+}
+
+/// Where the mouth of a vowel begins that an /h/ stands before: an /h/ is that vowel, breathed.
+fn breathed(voice: &Voice, last: Option<Segment>, vowel: Segment) -> Option<i64> {
+    let h = last.filter(|last| matches!(last.phone, Phone::Hh | Phone::Hv))?;
+    let follows = vowel.start.saturating_sub(h.end) <= voice.gap;
+    (follows && vowel.phone.is_vowel()).then_some(h.start)
 }
 
 /// The closure's posture, where `segment` is the release of a visible one that no label stands for:

@@ -227,6 +227,19 @@ fn weights(held: &[Held], ticks: i64) -> [f64; 15] {
     weights
 }
 
+fn header() -> String {
+    format!("time_s,{}\n", NAMES.join(","))
+}
+
+fn row(held: &[Held], rate: Fps, k: u64, out: &mut String) {
+    let time = k as f64 * f64::from(rate.den) / f64::from(rate.num);
+    let _ = write!(out, "{time:.6}");
+    for weight in weights(held, rate.ticks(k)) {
+        let _ = write!(out, ",{weight:.5}");
+    }
+    out.push('\n');
+}
+
 /// A row an instant, so many `rows`: the time and a weight per viseme.
 pub fn write(
     segments: &[Segment],
@@ -235,15 +248,10 @@ pub fn write(
     out: &mut TextOutput,
 ) -> anyhow::Result<()> {
     let held = held(segments);
-    let mut text = format!("time_s,{}\n", NAMES.join(","));
+    let mut text = header();
     for k in 0..rows {
         interrupt::check()?;
-        let time = k as f64 * f64::from(rate.den) / f64::from(rate.num);
-        let _ = write!(text, "{time:.6}");
-        for weight in weights(&held, rate.ticks(k)) {
-            let _ = write!(text, ",{weight:.5}");
-        }
-        text.push('\n');
+        row(&held, rate, k, &mut text);
         if !out.write(&text)? {
             break;
         }
@@ -308,7 +316,11 @@ mod tests {
 
     #[test]
     fn the_table_has_a_row_an_instant_and_fifteen_weights() {
-        let text = table(&say(&[Phone::M], 4800), Fps { num: 50, den: 1 }, 4800);
+        let mut text = header();
+        let held = held(&say(&[Phone::M], 4800));
+        for k in 0..6 {
+            row(&held, Fps { num: 50, den: 1 }, k, &mut text);
+        }
         let lines: Vec<_> = text.lines().collect();
         assert_eq!(
             lines[0],
