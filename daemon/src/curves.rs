@@ -49,7 +49,13 @@ pub fn run(args: &CurvesArgs) -> anyhow::Result<()> {
     let mut out = TextOutput::create(args.output.as_deref())?;
     let mut text = table.header();
     start()?.each(|k, instant| {
-        table.row(rate, k, instant, &measure(&cast.head, &instant.frame), &mut text);
+        table.row(
+            rate,
+            k,
+            instant,
+            &measure(&cast.head, &instant.frame),
+            &mut text,
+        );
         let wanted = out.write(&text);
         text.clear();
         wanted

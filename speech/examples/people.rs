@@ -232,11 +232,7 @@ const PHONES: [(&str, &[Phone], &str); 12] = [
         "aperture 9.9, jaw 5.9 (German a, VTL)",
     ),
     ("ah", &[Phone::Ah], ""),
-    (
-        "ao ow",
-        &[Phone::Ao, Phone::Ow],
-        "jaw 8.7 (German o, VTL)",
-    ),
+    ("ao ow", &[Phone::Ao, Phone::Ow], "jaw 8.7 (German o, VTL)"),
     (
         "uw ux",
         &[Phone::Uw, Phone::Ux],
@@ -306,17 +302,15 @@ fn tell_closures(all: &[Spoken]) {
         "closures: {} ms, all {shortest:.0} to {longest:.0}; people: 40 to 90, median 55 (EMA), 57 +- 24 (Crystal and House 1988)",
         spread(lasts, 0)
     );
-    println!(
-        "their middle after that of the hold: {} ms",
-        spread(off, 0)
-    );
+    println!("their middle after that of the hold: {} ms", spread(off, 0));
     println!(
         "peak speed of the lips into them: {} mm/s, out of them: {}",
         spread(closing, 0),
         spread(opening, 0)
     );
     let peak = |of: fn(&Spoken) -> &Vec<f64>, scale: f64| {
-        let fastest = |s: &Spoken| scale * speeds(of(s)).iter().fold(0.0, |a: f64, v| a.max(v.abs()));
+        let fastest =
+            |s: &Spoken| scale * speeds(of(s)).iter().fold(0.0, |a: f64, v| a.max(v.abs()));
         spread(all.iter().map(fastest).collect(), 0)
     };
     println!(
@@ -414,6 +408,8 @@ fn main() -> Result<(), Box<dyn Error>> {
         let (begins, takes) = rounding(&face, ms);
         println!("  of {ms} ms: begins {begins:.0} ms before the vowel, takes {takes:.0} ms");
     }
-    println!("  people: begins 0.7 ms earlier a ms of consonant (Perrier et al. 1996), takes 50 to 100 ms (Stevens 1998)");
+    println!(
+        "  people: begins 0.7 ms earlier a ms of consonant (Perrier et al. 1996), takes 50 to 100 ms (Stevens 1998)"
+    );
     Ok(())
 }

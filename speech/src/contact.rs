@@ -1,7 +1,7 @@
 //! Lips that touch where they must, however short the label is.
 //!
 //! A weighted mean reaches no target, so blending alone leaves real /p b m/ open, and a virtual target
-//! past contact (the tables' -3 mm) closes them only as long as they are not too short. So a labelled
+//! past contact (the tables' -2 mm) closes them only as long as they are not too short. So a labelled
 //! hold has a window, after the special closure phases of Albrecht et al. 2002: within it the lip
 //! controls go over from the blend to the contact target itself, and the jaw to no more than that
 //! target's opening. The window is fully on in the hold's core, which keeps so far from its ends that
@@ -24,6 +24,8 @@ const LONG_HELD: f32 = 1.5;
 pub(crate) struct Hold {
     pub(crate) start: i64,
     pub(crate) end: i64,
+    /// Where the first label of several ends, and where the last begins.
+    pub(crate) parts: (i64, i64),
     pub(crate) kind: Contact,
     /// Index into [`Voice::postures`].
     pub(crate) posture: u16,
@@ -61,15 +63,23 @@ impl Windows {
         longest.into_iter().fold(self.ramp_min, i64::max) + self.half_core_min
     }
 
-    /// Where the window of `hold` is fully on.
+    /// Where the window of `hold` is fully on: from the first of its labels to the last.
     fn core(&self, hold: &Hold) -> (i64, i64) {
-        let half = hold.end.saturating_sub(hold.start) / 2;
-        let middle = hold.start.saturating_add(half);
+        let (first_end, last_start) = hold.parts;
+        let first = self.core_of(hold.kind, hold.start, first_end);
+        let last = self.core_of(hold.kind, last_start, hold.end);
+        (first.0, last.1)
+    }
+
+    /// The same of one label.
+    fn core_of(&self, kind: Contact, start: i64, end: i64) -> (i64, i64) {
+        let half = end.saturating_sub(start) / 2;
+        let middle = start.saturating_add(half);
         let whole = half - self.inset;
         // A label is longer than the contact within it, unless the sound is held on purpose.
         let (long, held) = self.long;
         let over = (half * 2 - long).max(0);
-        let half = if hold.kind == Contact::Teeth || over >= held - long {
+        let half = if kind == Contact::Teeth || over >= held - long {
             whole
         } else {
             let most = self.half_core_max;
@@ -81,7 +91,7 @@ impl Windows {
     }
 
     /// How far `holds[i]` is in charge at `time`, 0..1, with `ramps` to come and go; both are cut
-    /// short by the cores of its neighbours.
+    /// short by the cores of its neighbours, so that lips part between two.
     fn weight(&self, holds: &[Hold], i: usize, time: i64, ramps: (i64, i64)) -> f32 {
         let core = self.core(&holds[i]);
         let (away, room, ramp) = if time < core.0 {
@@ -93,7 +103,7 @@ impl Windows {
             let room = next.map_or(i64::MAX, |next| next.saturating_sub(core.1));
             (time.saturating_sub(core.1), room, ramps.1)
         };
-        let ramp = ramp.min(room).max(self.ramp_min);
+        let ramp = ramp.min(room / 5 * 4).max(self.ramp_min);
         if away <= 0 {
             1.0
         } else if away >= ramp {

@@ -275,10 +275,14 @@ impl Track {
         if let Some(kind) = posture.kind {
             match self.holds.last_mut() {
                 // /m/ before /p/ is one closure.
-                Some(hold) if hold.kind == kind && hold.end >= start => hold.end = end,
+                Some(hold) if hold.kind == kind && hold.end >= start => {
+                    hold.end = end;
+                    hold.parts.1 = start;
+                }
                 _ => self.holds.push(Hold {
                     start,
                     end,
+                    parts: (end, start),
                     kind,
                     posture: index,
                 }),

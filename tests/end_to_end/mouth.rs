@@ -3,11 +3,13 @@
 //!
 //! Measured by `mouthpiece curves` on the skin as it is drawn, for every utterance in `fixtures/`.
 
+use std::f64::consts::TAU;
 use std::fmt::Write as _;
 
 use mouthpiece_tests::binary;
 use mouthpiece_tests::curves::Table;
 use mouthpiece_tests::fixtures::{self, Label, Utterance};
+use mouthpiece_tests::wav;
 
 /// Rows a second: three simulation steps a row, so that no closure slips between two.
 pub(crate) const RATE_HZ: f64 = 200.0;
@@ -152,6 +154,77 @@ fn the_mouth_comes_to_rest_in_long_pauses() {
         least,
         |mm| mm <= REST_MM_MAX,
     );
+}
+
+/// Syllables `m aa`, 0.3 s each after 0.3 s of silence.
+const SYLLABLES: usize = 8;
+
+/// How wide the mouth is in each syllable, where `marked` ones carry stress or are loud.
+fn syllables(marked: impl Fn(usize) -> bool, heard: bool) -> Vec<f64> {
+    let folder = tempfile::tempdir().unwrap();
+    let mut labels = "{\"start\": 0, \"end\": 0.3, \"phone\": \"h#\"}\n".to_owned();
+    for i in 0..SYLLABLES {
+        let at = 0.3 + 0.3 * i as f64;
+        let (middle, end) = (at + 0.1, at + 0.3);
+        let _ = writeln!(
+            labels,
+            r#"{{"start": {at}, "end": {middle}, "phone": "m"}}"#
+        );
+        let stress = match (heard, marked(i)) {
+            (true, _) => "",
+            (false, true) => r#", "stress": 1"#,
+            (false, false) => r#", "stress": 0"#,
+        };
+        let _ = writeln!(
+            labels,
+            r#"{{"start": {middle}, "end": {end}, "phone": "aa"{stress}}}"#
+        );
+    }
+    let path = folder.path().join("said.ndjson");
+    std::fs::write(&path, labels).unwrap();
+    let path = path.to_string_lossy();
+    let mut args = vec!["curves", "--rate", "200", "--labels", &path];
+    let sound = folder.path().join("said.wav");
+    let sound_path = sound.to_string_lossy();
+    if heard {
+        // A voice of 120 Hz with overtones.
+        let seconds = 0.3 + 0.3 * SYLLABLES as f64;
+        let voice = (0..(seconds * 16e3) as usize).map(|n| {
+            let t = n as f64 / 16e3;
+            let i = ((t - 0.3) / 0.3).floor();
+            let level = match (i >= 0.0).then_some(i as usize) {
+                None => 0.0,
+                Some(i) if marked(i) => 0.3,
+                Some(_) => 0.05,
+            };
+            let tones = (1..8).map(|k| (TAU * 120.0 * f64::from(k) * t).sin() / f64::from(k));
+            level * tones.sum::<f64>()
+        });
+        let voice: Vec<f64> = voice.collect();
+        std::fs::write(&sound, wav::file(wav::Coding::S16, 16_000, 1, &voice)).unwrap();
+        args.extend(["--audio", &sound_path]);
+    }
+    let table = Table::parse(&binary::run(&args).expect_done().text());
+    let aperture = table.column("aperture_mm");
+    let row = |s: f64| (s * RATE_HZ) as usize;
+    let syllable = |i| 0.3 + 0.3 * f64::from(i);
+    (0..SYLLABLES as u32)
+        .map(|i| most(&aperture[row(syllable(i) + 0.1)..row(syllable(i) + 0.3)]))
+        .collect()
+}
+
+/// Guards prosody that is seen: what is stressed, or loud, is opened wider than the same syllable without.
+#[test]
+fn stressed_and_loud_syllables_open_wider() {
+    for heard in [false, true] {
+        let even = syllables(|i| i % 2 == 0, heard);
+        let odd = syllables(|i| i % 2 == 1, heard);
+        eprintln!("heard: {heard}: {even:.1?} {odd:.1?}");
+        for (i, (even, odd)) in even.iter().zip(&odd).enumerate() {
+            let (more, less) = if i % 2 == 0 { (even, odd) } else { (odd, even) };
+            assert!(more > &(less * 1.05), "syllable {i}: {more} {less}");
+        }
+    }
 }
 
 /// Guards what scripts rely on: the columns' names, a row for each instant from 0 to the end, the

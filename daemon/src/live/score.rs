@@ -217,6 +217,7 @@ impl Spoken {
 mod tests {
     use super::*;
     use mouthpiece_phonemes::{Phone, Segment};
+    use mouthpiece_speech::Delivery;
 
     fn speech() -> Speech {
         Speech::with(|articulation| {
@@ -340,5 +341,84 @@ mod tests {
             );
             score.take(Cue::Done { key: 1 }, start + 57_600);
         }
+    }
+
+    fn begun(speech: &Speech) -> Score {
+        let mut score = Score::new(speech, Calibration::default(), Idle::new(1), State::Idle);
+        let track = Box::new(speech.track(&open_vowel()));
+        let (key, start) = (1, 48_000);
+        score.take(Cue::Start { key, start, track }, 0);
+        score
+    }
+
+    #[test]
+    fn what_is_heard_opens_a_loud_mouth_wider_and_lifts_brows_in_time_without_a_jump() {
+        let speech = speech();
+        let mut score = begun(&speech);
+        let (said, audible) = (48_000 + 33_600, 48_000 + 20_000);
+        let (open, shown) = (jaw(&score, said), jaw(&score, audible));
+        let accent = mouthpiece_speech::Accent {
+            at: 30_000,
+            size: 1.0,
+            rises: true,
+        };
+        let delivery = Delivery {
+            loudness: vec![1.0; 140],
+            accents: vec![accent],
+        };
+        let heard = |delivery: &Delivery, key| Cue::Heard {
+            key,
+            delivery: delivery.clone(),
+        };
+        let felt = score.take(heard(&delivery, 1), audible);
+        assert_eq!(felt, 48_000 + accent.at - SEEN_BEFORE_TICKS);
+        assert!((jaw(&score, audible) - shown).abs() < 1e-4, "it jumps");
+        assert!(jaw(&score, said) > open * 1.05, "{open}");
+        // Nothing is felt of who does not speak, or does not any more.
+        assert_eq!(score.take(heard(&delivery, 2), audible), i64::MAX);
+        score.take(Cue::Stop { key: 1, at: said }, audible);
+        assert_eq!(score.take(heard(&delivery, 1), audible), i64::MAX);
+    }
+
+    #[test]
+    fn who_is_done_listens_and_is_forgotten_after_the_end() {
+        let speech = speech();
+        let mut score = begun(&speech);
+        let end = 48_000 + 67_200;
+        let open = jaw(&score, 48_000 + 33_600);
+        // Not done: labels may come yet, however late it is.
+        score.forget_before(end + 10 * TICK_RATE);
+        assert_eq!(jaw(&score, 48_000 + 33_600), open);
+        assert_eq!(score.take(Cue::Done { key: 1 }, 0), end);
+        let listens = |tick| score.states.at(tick).of(State::Listening);
+        assert!(listens(end + LISTENING_TICKS / 2) > 0.99);
+        assert!(listens(end + LISTENING_TICKS + 5 * TICK_RATE) < 0.01);
+        score.forget_before(end + FELT_AFTER_TICKS);
+        assert!(score.spoken.is_empty());
+        assert_eq!(score.take(Cue::Done { key: 1 }, 0), i64::MAX);
+    }
+
+    #[test]
+    fn labels_that_come_late_never_move_a_control_faster_than_a_correction_may() {
+        let speech = speech();
+        let mut score = begun(&speech);
+        // All of a second ago, when the face was at rest behind its last label.
+        let audible = 48_000 + 96_000;
+        let late = Segment::new(Phone::Ae, 72_000, 120_000);
+        let segments = vec![late];
+        let mut last = jaw(&score, audible);
+        score.take(Cue::Segments { key: 1, segments }, audible);
+        let known = score.known_at(audible)[Control::Jaw];
+        assert!(known > last + 0.03, "nothing came late: {known}, {last}");
+        let step = 80;
+        for tick in (audible..audible + 24_000).step_by(step) {
+            let own = score.known_at(tick)[Control::Jaw];
+            let own = (own - score.known_at(tick - step as i64)[Control::Jaw]).abs();
+            let now = jaw(&score, tick);
+            let most = own + Correction::speed(Control::Jaw) * step as f32 + 1e-5;
+            assert!((now - last).abs() <= most, "jumps at {tick}");
+            last = now;
+        }
+        assert_eq!(last, score.known_at(audible + 24_000 - 80)[Control::Jaw]);
     }
 }

@@ -68,7 +68,7 @@ fn refusals_name_file_row_and_fault() {
             "row `iy` names the class `vowels`",
         ),
         (
-            ("aperture_mm = -3.0", "aperture_mm = 3.0"),
+            ("aperture_mm = -2.0", "aperture_mm = 2.0"),
             SAME,
             "row `m` is of a class that makes contact with the other lip",
         ),
