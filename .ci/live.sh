@@ -1,5 +1,6 @@
 #!/usr/bin/env bash
-# The live test: what a second process hears and sees of the program, sound against picture.
+# The live tests: what a second process hears and sees of the program, sound against picture; and two minutes of a
+# face under load (tests/soak.py; an hour of it: tests/soak.py --minutes 60).
 # Skipped, and says why, where its tools are not installed; in CI they must be (status 1).
 #
 #   .ci/live.sh [SECONDS]
@@ -15,6 +16,10 @@ if ! command -v python3 >/dev/null; then
 else
     status=0
     python3 tests/live_sync.py --seconds "${1:-20}" --limit-ms "$limit_ms" </dev/null || status=$?
+    if [ "$status" = 0 ]; then
+        # Two minutes say little of memory: what is still growing into its size may.
+        python3 tests/soak.py --minutes 2 --skew-ms "$limit_ms" --growth-mb 8 </dev/null || status=$?
+    fi
 fi
 if [ "$status" = 2 ] && [ -z "${CI:-}" ]; then
     echo "live: skipped, since a tool named above is not installed (make setup-test installs it)"

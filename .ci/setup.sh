@@ -171,6 +171,14 @@ Linux)
     ;;
 esac
 
+# A browser for the page of health, where the system has one to install.
+if $with_tests && has apt-get && ! { has chromium-headless-shell || has chromium || has google-chrome; }; then
+    echo "setup: installing chromium-headless-shell: the page of health is tested in it"
+    { as_root apt-get update -q && as_root env DEBIAN_FRONTEND=noninteractive \
+        apt-get install -y -q --no-install-recommends chromium-headless-shell; } </dev/null >/dev/null 2>&1 ||
+        echo "setup: it cannot be installed; the test that needs it is skipped and says so" >&2
+fi
+
 # Khronos's judge of head files, where npm is at hand.
 validator=target/node/node_modules/gltf-validator
 if $with_tests && has npm && [ ! -d "$validator" ]; then
