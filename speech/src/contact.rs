@@ -103,7 +103,7 @@ impl Windows {
             let room = next.map_or(i64::MAX, |next| next.saturating_sub(core.1));
             (time.saturating_sub(core.1), room, ramps.1)
         };
-        let ramp = ramp.min(room / 5 * 4).max(self.ramp_min);
+        let ramp = ramp.min(room / 3 * 2).max(self.ramp_min);
         if away <= 0 {
             1.0
         } else if away >= ramp {
