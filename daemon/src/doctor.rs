@@ -6,6 +6,7 @@ use std::process::{Command, Stdio};
 use cpal::traits::{DeviceTrait as _, HostTrait as _};
 use mouthpiece_render::Gpu;
 
+use crate::live;
 use crate::media::output;
 use crate::voices;
 
@@ -100,7 +101,15 @@ fn display(text: &mut String) {
     });
     let native = cfg!(any(windows, target_os = "macos"));
     match found {
-        Some(found) => line(text, "display", format_args!("{found}")),
+        Some(found) => {
+            line(text, "display", format_args!("{found}"));
+            match live::screens() {
+                Ok(screens) => screens
+                    .iter()
+                    .for_each(|screen| line(text, "", format_args!("screen {screen}"))),
+                Err(error) => line(text, "", format_args!("{error:#}")),
+            }
+        }
         None if native => line(text, "display", format_args!("the desktop's")),
         None => line(
             text,

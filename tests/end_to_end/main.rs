@@ -17,6 +17,8 @@
 //! | `puppet` | other avatars, driven over UDP |
 //! | `sound` | sound files of every kind |
 //! | `voices` | text instead of labels: speech engines, recordings |
+//! | `config` | the configuration file: checked, printed, under flags |
+//! | `kiosk` | a face that is watched over: systemd, a changed configuration, the end |
 //! | `usage` | exit statuses, help, what doctor and bench print |
 //! | `show` | what lies under the skin, drawn |
 //! | `still` | pictures against golden ones |
@@ -32,6 +34,7 @@
 
 mod backdrop;
 mod closures;
+mod config;
 mod export;
 mod expression;
 mod formats;
@@ -42,6 +45,7 @@ mod head_landmarks;
 mod health;
 mod house;
 mod jobs;
+mod kiosk;
 mod labels;
 mod mouth;
 mod outline;

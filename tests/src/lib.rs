@@ -9,6 +9,7 @@
 //! | [`binary`] | finds and runs `mouthpiece`, with a deadline |
 //! | [`daemon`] | a running daemon: its socket, its health, its log |
 //! | [`screen`] | an X server of a test's own |
+//! | [`display`] | what is on it |
 //! | [`fixtures`] | the utterances in `fixtures/` |
 //! | [`curves`] | reads the table that `mouthpiece curves` writes |
 //! | [`mp4`] | walks the boxes of an MP4 |
@@ -26,6 +27,7 @@
 pub mod binary;
 pub mod curves;
 pub mod daemon;
+pub mod display;
 pub mod fixtures;
 pub mod mp4;
 pub mod picture;

@@ -17,9 +17,18 @@ impl Screen {
     /// # Errors
     /// When Xvfb is not installed: a sentence that says so.
     pub fn start() -> Result<Self, String> {
+        Self::sized(800, 600)
+    }
+
+    /// Starts one of `width` x `height` pixels.
+    ///
+    /// # Errors
+    /// When Xvfb is not installed: a sentence that says so.
+    pub fn sized(width: u16, height: u16) -> Result<Self, String> {
         // It writes the number that it found free to its standard output.
         let server = Command::new("Xvfb")
-            .args(["-displayfd", "1", "-screen", "0", "800x600x24"])
+            .args(["-displayfd", "1", "-screen", "0"])
+            .arg(format!("{width}x{height}x24"))
             .args(["-nolisten", "tcp"])
             .stdin(Stdio::null())
             .stdout(Stdio::piped())
@@ -35,6 +44,11 @@ impl Screen {
         };
         assert!(read.is_ok() && number.len() > 1, "Xvfb gave no number");
         Ok(screen)
+    }
+
+    /// Sends the server a signal: `STOP` and it takes no pictures, until `CONT`.
+    pub fn signal(&self, name: &str) {
+        crate::binary::signal(self.server.id(), name);
     }
 }
 

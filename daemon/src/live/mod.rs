@@ -54,3 +54,4 @@ static ALLOCATOR: assert_no_alloc::AllocDisabler = assert_no_alloc::AllocDisable
 
 pub use commands::{run, say, sync_test};
 pub use sound::resample::Resample;
+pub use window::screens;

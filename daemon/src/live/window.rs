@@ -33,6 +33,7 @@ mod cursor;
 mod look;
 mod open;
 mod pace;
+mod screens;
 mod wander;
 
 use awake::Awake;
@@ -40,6 +41,7 @@ use caption::{Painter, Words};
 use cursor::Cursor;
 pub use look::Look;
 use pace::Pace;
+pub use screens::screens;
 
 /// How long a covered window rests, and one whose card failed.
 const HIDDEN_NS: i64 = 100_000_000;
