@@ -126,7 +126,11 @@ pub(crate) fn stand_ins(
 }
 
 /// A user's picture, bound as a material's maps are.
-pub(crate) fn picture(gpu: &Gpu, layouts: &Layouts, picture: &Picture) -> wgpu::BindGroup {
+pub(crate) fn picture(
+    gpu: &Gpu,
+    maps: &wgpu::BindGroupLayout,
+    picture: &Picture,
+) -> wgpu::BindGroup {
     let view = upload::image(gpu, "backdrop", picture.premultiplied());
     let sampler = gpu.device().create_sampler(&wgpu::SamplerDescriptor {
         label: Some("backdrop"),
@@ -137,7 +141,7 @@ pub(crate) fn picture(gpu: &Gpu, layouts: &Layouts, picture: &Picture) -> wgpu::
     });
     let view = wgpu::BindingResource::TextureView(&view);
     let resources = [wgpu::BindingResource::Sampler(&sampler), view.clone(), view];
-    group(gpu.device(), &layouts.maps, &resources)
+    group(gpu.device(), maps, &resources)
 }
 
 /// The key lamp's shadow map, to be drawn to, and as the shaders read it.

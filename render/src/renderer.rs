@@ -96,6 +96,14 @@ pub(crate) struct Hung {
     pub(crate) group: wgpu::BindGroup,
 }
 
+impl Hung {
+    /// Puts `picture` on the card; for a large one that takes longer than a picture may.
+    pub(crate) fn new(gpu: &Gpu, maps: &wgpu::BindGroupLayout, picture: Arc<Picture>) -> Self {
+        let group = bindings::picture(gpu, maps, &picture);
+        Self { picture, group }
+    }
+}
+
 impl Renderer {
     /// Puts `head` on the card, for targets of `format` (sRGB or not: the picture is the same).
     ///
@@ -306,10 +314,7 @@ impl Renderer {
                 .as_ref()
                 .is_none_or(|h| !Arc::ptr_eq(&h.picture, picture))
         {
-            self.hung = Some(Hung {
-                picture: Arc::clone(picture),
-                group: bindings::picture(gpu, &self.layouts, picture),
-            });
+            self.hung = Some(Hung::new(gpu, &self.layouts.maps, Arc::clone(picture)));
         }
         let (frame, open) = self.prepare(key_frame, view, size);
         let moving = bytemuck::cast_slice::<SkinMoving, u8>(&self.skin.moving);

@@ -10,7 +10,8 @@ use wgpu::rwh::{HasDisplayHandle, HasWindowHandle};
 
 use crate::error::RenderError;
 use crate::gpu::{Gpu, GpuError};
-use crate::renderer::Renderer;
+use crate::picture::Picture;
+use crate::renderer::{Hung, Renderer};
 use crate::shot::{Shot, Take};
 use crate::tier::Tier;
 use crate::view::View;
@@ -47,6 +48,8 @@ pub struct WindowTarget {
     tier: Tier,
     /// The renderer of another tier, in the making on a thread of its own.
     coming: Option<(Tier, JoinHandle<Result<Renderer, RenderError>>)>,
+    /// A picture to be hung behind the head, on its way to the card.
+    hanging: Option<JoinHandle<Hung>>,
     cost_ns: i64,
     /// Who wants the next picture back.
     take: Option<Take>,
@@ -123,6 +126,7 @@ impl WindowTarget {
             make_surface,
             tier,
             coming: None,
+            hanging: None,
             cost_ns: 0,
             take: None,
         };
@@ -184,6 +188,39 @@ impl WindowTarget {
         }
     }
 
+    /// Begins to put `picture` on the card, beside drawing, so that no picture is late when a view comes that has it
+    /// behind the head.
+    pub fn hang(&mut self, picture: &Arc<Picture>) {
+        let hung = self.renderer.hung.as_ref();
+        if hung.is_some_and(|hung| Arc::ptr_eq(&hung.picture, picture)) {
+            return;
+        }
+        let (gpu, picture) = (self.gpu.clone(), Arc::clone(picture));
+        let maps = self.renderer.layouts.maps.clone();
+        let spawned = std::thread::Builder::new()
+            .name("backdrop".into())
+            .spawn(move || Hung::new(&gpu, &maps, picture));
+        // Without a thread, drawing does it.
+        self.hanging = spawned.ok();
+    }
+
+    /// Whether a picture is still on its way to the card.
+    pub fn is_hanging(&mut self) -> bool {
+        if self
+            .hanging
+            .as_ref()
+            .is_some_and(|thread| !thread.is_finished())
+        {
+            return true;
+        }
+        if let Some(thread) = self.hanging.take()
+            && let Ok(hung) = thread.join()
+        {
+            self.renderer.hung = Some(hung);
+        }
+        false
+    }
+
     /// Takes over the other tier's renderer once it is there.
     fn take_over(&mut self) {
         if self.coming.as_ref().is_none_or(|(_, t)| !t.is_finished()) {
@@ -193,7 +230,10 @@ impl WindowTarget {
             return;
         };
         match thread.join() {
-            Ok(Ok(renderer)) => (self.renderer, self.tier) = (renderer, tier),
+            Ok(Ok(mut renderer)) => {
+                renderer.hung = self.renderer.hung.take();
+                (self.renderer, self.tier) = (renderer, tier);
+            }
             Ok(Err(error)) => {
                 tracing::warn!(tier = tier.name(), "the tier cannot be drawn: {error}");
             }

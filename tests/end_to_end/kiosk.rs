@@ -10,6 +10,7 @@ use std::time::{Duration, Instant};
 use mouthpiece_tests::binary;
 use mouthpiece_tests::display::Display;
 use mouthpiece_tests::or_skipped;
+use mouthpiece_tests::picture::Picture;
 use serde_json::{Value, json};
 use tempfile::TempDir;
 
@@ -207,13 +208,20 @@ fn a_kiosk_is_watched_over_reconfigured_and_ended() {
     display.wait_for((2, 397), red);
     display.wait("a turned face", |d| d.pixels(160, 2, 1, 1) == cloth);
 
+    // A picture from beside the file.
+    Picture::from_rgba(2, 2, &[0, 96, 160, 255].repeat(4)).write(&face.path("sky.png"));
+    face.configure(&config("sky.png", ""));
+    display.wait_for((2, 2), [0, 96, 160]);
+    face.configure(&config("#a03040", ""));
+    display.wait_for((2, 2), red);
+
     // A wrong one changes nothing, nor does it when it is read again.
     face.configure(&config("#008000", "seed = 3\n"));
     let refused = "line 6: look.seed: there is no such key";
     face.wait_for_log(refused, 1);
     binary::signal(face.child.id(), "HUP");
     face.wait_for_log(refused, 2);
-    display.wait_for((2, 397), red);
+    display.wait_for((2, 2), red);
 
     // What is felt at the next start only is said, and the rest of that file is felt.
     face.configure(&config(
