@@ -24,6 +24,8 @@ use crate::config::{Config, Source};
 
 /// Programs save a file in several steps; this long after the last of them it is read.
 const SETTLE: Duration = Duration::from_millis(200);
+/// Events that put this off at most.
+const SETTLE_TURNS: u32 = 20;
 
 /// The configuration in use, for whoever asks at a moment of its own.
 pub type Current = Arc<ArcSwap<Config>>;
@@ -93,8 +95,8 @@ impl Reload {
         let old = self.current.load_full();
         let changed = old.differs_in(&config);
         if changed.is_empty() {
-            tracing::info!("the configuration is read again: nothing changed");
-            return;
+            // The files that it names may have changed.
+            tracing::info!("the configuration is read again");
         }
         let (at_start, live): (Vec<_>, Vec<_>) = changed.into_iter().partition(|c| c.at_start);
         if !at_start.is_empty() {
@@ -130,9 +132,13 @@ async fn read(file: &Path) -> Option<Vec<u8>> {
     read.await.ok().flatten()
 }
 
-/// Waits until nothing has happened for a while.
+/// Waits until nothing has happened for a while; in a folder where something always happens, only so long.
 async fn settle(changes: &mut mpsc::Receiver<()>) {
-    while let Ok(Some(())) = tokio::time::timeout(SETTLE, changes.recv()).await {}
+    for _ in 0..SETTLE_TURNS {
+        if tokio::time::timeout(SETTLE, changes.recv()).await.is_err() {
+            return;
+        }
+    }
 }
 
 /// Tells `changed` of everything that happens in the file's folder: programs replace files, and who watches the
