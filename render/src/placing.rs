@@ -10,7 +10,7 @@ use glam::{Mat4, Vec2, Vec4, vec2, vec3};
 use crate::view::{Extent, Framing};
 
 /// How far below the chin a bust is sure to be as wide as its shoulders.
-const SHOULDERS_MM: f32 = 60.0;
+const SHOULDERS_MM: f32 = 90.0;
 
 /// The picture's place on the screen.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -8,10 +8,11 @@ use super::value::Whole;
 section! {
     /// The words under the face, where clients send them (`caption`).
     pub struct Captions {
-        /// How they are shown: "off", on a dark "box", or white with a dark "outline".
+        /// How they are shown: "off", on a dark "box", or white with a dark "outline". Their
+        /// letters are Latin, Greek and Cyrillic.
         style: CaptionStyle = CaptionStyle::Off,
         /// Height of their letters, hundredths of the picture's height; smaller where they would not fit.
-        size_percent: Whole<2, 20> = Whole::new(5),
+        size_percent: Whole<2, 20> = Whole::new(4),
     }
 }
 

@@ -11,9 +11,9 @@ use mouthpiece_render::{Gpu, Overlay};
 
 use crate::config::{CaptionStyle, Captions};
 
-/// Share of the picture's width that a line may take, and of its height that all of them may.
+/// Share of the picture's width that a line may take, and of its height that all of them may: the mouth is to be seen.
 const WIDTH: f32 = 0.88;
-const HEIGHT: f32 = 0.4;
+const HEIGHT: f32 = 0.2;
 /// Share of the picture's height left below.
 const FOOT: f32 = 0.04;
 /// Smaller letters than this are not read, pixels.
