@@ -90,13 +90,21 @@ fn csv(bytes: &[u8], columns: &[String]) -> Result<Vec<Row>, String> {
     let mut record = ByteRecord::new();
     // In memory nothing but the end stops it.
     while reader.read_byte_record(&mut record).unwrap_or(false) {
-        let line = record.position().map_or(0, csv::Position::line);
+        let line = record.position().map_or(0, |start| line(bytes, start));
         rows.push(Row {
             line,
             cells: cells(&record, &names),
         });
     }
     Ok(rows)
+}
+
+/// The line of a record's first cell: a position is that of the end of the record before, with empty lines behind it.
+fn line(bytes: &[u8], start: &csv::Position) -> u64 {
+    let start_byte = usize::try_from(start.byte()).unwrap_or(usize::MAX);
+    let rest = bytes.get(start_byte..).unwrap_or_default();
+    let ends = rest.iter().take_while(|b| matches!(b, b'\n' | b'\r'));
+    start.line() + ends.filter(|b| **b == b'\n').count() as u64
 }
 
 fn cells(record: &ByteRecord, names: &[String]) -> Result<Cells, String> {
@@ -201,37 +209,24 @@ mod tests {
     }
 
     #[test]
-    fn both_kinds_of_list_say_the_same() {
-        let csv = csv(
-            b"labels, Label_Rate,output\n\"a,b.phn\",8000,a.mp4\n\nc.phn,,c.mp4\n",
-            &columns(),
-        )
-        .unwrap();
-        let ndjson = ndjson(
-            b"{\"labels\": \"a,b.phn\", \"label_rate\": 8000, \"output\": \"a.mp4\"}\n\n\n\
-              {\"labels\": \"c.phn\", \"label-rate\": null, \"output\": \"c.mp4\"}\n",
-            &columns(),
-        );
-        let wanted = vec![
-            (
-                2,
-                vec![
-                    ("label-rate", "8000"),
-                    ("labels", "a,b.phn"),
-                    ("output", "a.mp4"),
-                ],
-            ),
+    fn both_kinds_of_list_say_the_same_of_the_same_lines() {
+        let of_csv = "labels, Label_Rate,output\n\"a,b.phn\",8000,a.mp4\n\nc.phn,,c.mp4\n";
+        let of_ndjson = "\n{\"labels\": \"a,b.phn\", \"label_rate\": 8000, \"output\": \"a.mp4\"}\n\n\
+                         {\"labels\": \"c.phn\", \"label-rate\": null, \"output\": \"c.mp4\"}\n";
+        let first = vec![
+            ("label-rate", "8000"),
+            ("labels", "a,b.phn"),
+            ("output", "a.mp4"),
+        ];
+        let wanted = [
+            (2, first),
             (4, vec![("labels", "c.phn"), ("output", "c.mp4")]),
         ];
-        assert_eq!(of(&csv), wanted);
-        assert_eq!(
-            of(&ndjson),
-            wanted[..1]
-                .iter()
-                .cloned()
-                .chain([(4, wanted[1].1.clone())])
-                .collect::<Vec<_>>()
-        );
+        for end in ["\n", "\r\n"] {
+            let with_end = |text: &str| text.replace('\n', end).into_bytes();
+            assert_eq!(of(&csv(&with_end(of_csv), &columns()).unwrap()), wanted);
+            assert_eq!(of(&ndjson(&with_end(of_ndjson), &columns())), wanted);
+        }
     }
 
     #[test]
