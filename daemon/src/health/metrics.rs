@@ -248,7 +248,7 @@ impl Lines<'_> {
     fn spread(&mut self, name: &str, help: &str, spread: &Spread) -> fmt::Result {
         let counts = spread.counts();
         let bounds = Spread::BOUNDS_MS.iter().map(|ms| ms / 1000.0);
-        let buckets: Vec<(f64, u64)> = bounds.chain([f64::MAX]).zip(counts).collect();
+        let buckets: Vec<(f64, u64)> = bounds.chain([f64::INFINITY]).zip(counts).collect();
         let count = counts.iter().sum();
         self.figure(name, help, Some(&Unit::Seconds), MetricType::Histogram)?
             .encode_histogram::<NoLabelSet>(spread.sum_s(), count, &buckets, None)
