@@ -24,6 +24,8 @@ fn mouthpiece() -> Command {
         .env_remove("DISPLAY")
         .env_remove("WAYLAND_DISPLAY")
         .env_remove("WAYLAND_SOCKET")
+        // No configuration of the user's.
+        .env("XDG_CONFIG_HOME", "/nowhere")
         .stdin(Stdio::null());
     command
 }

@@ -170,8 +170,9 @@ pub fn command<S: AsRef<OsStr>>(args: &[S]) -> Command {
         .env_remove("DISPLAY")
         .env_remove("WAYLAND_DISPLAY")
         .env_remove("RUST_LOG")
-        // No daemon of the user's is to be spoken through.
-        .env("XDG_RUNTIME_DIR", runtime_folder());
+        // No daemon of the user's is to be spoken through, no configuration of theirs read.
+        .env("XDG_RUNTIME_DIR", runtime_folder())
+        .env("XDG_CONFIG_HOME", runtime_folder());
     command
 }
 

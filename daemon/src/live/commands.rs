@@ -60,6 +60,7 @@ pub fn run(args: &RunArgs) -> Result<()> {
         net.spawn(door.serve(health));
     }
     let serving = net.spawn(server.serve(player.handle()));
+    let leaving = net.spawn(goodbye(stop.clone(), player.handle(), serving));
     let reload = |window| Reload {
         source,
         current: Current::new(ArcSwap::from_pointee(config)),
@@ -85,13 +86,15 @@ pub fn run(args: &RunArgs) -> Result<()> {
         net.block_on(stop.wait());
     }
     stop.ask();
-    net.block_on(goodbye(&player.handle(), serving));
+    // It tells by itself, in time.
+    let _ = net.block_on(leaving);
     net.shutdown_timeout(CLOSE_PATIENCE);
     player.end()
 }
 
-/// Stops what is spoken and tells who sent it, as long as that takes no longer than it should.
-async fn goodbye(player: &Handle, serving: JoinHandle<()>) {
+/// Once the end is asked for, stops what is spoken and tells who sent it, as long as that takes no longer than it should.
+async fn goodbye(stop: Stop, player: Handle, serving: JoinHandle<()>) {
+    stop.wait().await;
     player.closing().cancel();
     player.stop(None).await;
     let serving = tokio::time::timeout(CLOSE_PATIENCE, serving);

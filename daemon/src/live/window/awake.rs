@@ -6,6 +6,7 @@
 
 use x11rb::connection::Connection as _;
 use x11rb::protocol::screensaver::ConnectionExt as _;
+use x11rb::protocol::xproto::{ConnectionExt as _, ScreenSaver};
 use x11rb::rust_connection::RustConnection;
 
 /// While it lives, the screen does.
@@ -32,6 +33,8 @@ impl Awake {
         if (version.server_major_version, version.server_minor_version) < (1, 1) {
             return Err("the X server's saver cannot be suspended".into());
         }
+        // What is blank already would stay so.
+        connection.force_screen_saver(ScreenSaver::RESET)?.check()?;
         connection.screensaver_suspend(1)?.check()?;
         connection.flush()?;
         Ok(Self(connection))
