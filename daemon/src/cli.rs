@@ -66,7 +66,10 @@ pub enum Command {
     Head(HeadCommand),
     Bench(BenchArgs),
     Doctor(DoctorArgs),
-    #[command(subcommand)]
+    #[command(
+        subcommand,
+        after_help = "Examples:\n  mouthpiece config print > kiosk.toml\n  mouthpiece config check kiosk.toml"
+    )]
     Config(ConfigCommand),
     #[command(hide = true)]
     SyncTest(SyncTestArgs),

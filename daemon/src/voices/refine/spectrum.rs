@@ -70,7 +70,10 @@ pub fn bands(sound: &[f32]) -> Vec<Frame> {
                 low * SIZE / 48_000,
                 (high * SIZE / 48_000).max(low * SIZE / 48_000 + 1),
             );
-            let power: f32 = output[a..b].iter().map(|bin| bin.norm_sqr()).sum();
+            let power: f32 = output[a..b]
+                .iter()
+                .map(realfft::num_complex::Complex::norm_sqr)
+                .sum();
             (power / (SIZE * SIZE) as f32 + 1e-9).log10().max(FLOOR)
         })
     };
