@@ -12,6 +12,7 @@ mod skin;
 mod stage;
 mod text;
 mod values;
+mod wire;
 
 use std::path::PathBuf;
 
@@ -32,6 +33,7 @@ pub use skin::SkinArg;
 pub use stage::StageArgs;
 pub use text::TextArgs;
 pub use values::{Fps, Size};
+pub use wire::WireArgs;
 
 /// A real-time, speech-driven talking head: phoneme labels and sound in, a speaking face out.
 #[derive(Debug, Parser)]
@@ -78,13 +80,11 @@ pub enum Command {
 /// The daemon: a window, sound and a socket; the face idles alive until something speaks
 #[derive(Debug, Args)]
 #[command(
-    after_help = "Examples:\n  mouthpiece run\n  mouthpiece run --config kiosk.toml\n  mouthpiece run --listen ./face.sock --fullscreen\n  mouthpiece run --listen 127.0.0.1:7716 --audio-device alsa:pulse"
+    after_help = "Examples:\n  mouthpiece run\n  mouthpiece run --config kiosk.toml\n  mouthpiece run --listen ./face.sock --fullscreen\n  mouthpiece run --listen 127.0.0.1:7716 --listen ws://127.0.0.1:7718\n  mouthpiece run --listen 0.0.0.0:7716 --token-file token.txt"
 )]
 pub struct RunArgs {
-    /// Where to listen: a path for a Unix socket or HOST:PORT on loopback [default:
-    /// mouthpiece.sock in $XDG_RUNTIME_DIR]
-    #[arg(long, value_name = "ADDR")]
-    pub listen: Option<String>,
+    #[command(flatten)]
+    pub wire: WireArgs,
     /// Where health is told (/healthz, /metrics, a page at /): HOST:PORT, or none [default: 127.0.0.1:7717]
     #[arg(long, value_name = "ADDR")]
     pub http: Option<Door>,
@@ -103,9 +103,8 @@ pub struct RunArgs {
 pub struct SayArgs {
     #[command(flatten)]
     pub input: InputArgs,
-    /// The daemon to speak through: as `run --listen`; when given, a daemon must be there
-    #[arg(long, value_name = "ADDR")]
-    pub listen: Option<String>,
+    #[command(flatten)]
+    pub wire: WireArgs,
     #[command(flatten)]
     pub stage: StageArgs,
 }

@@ -46,7 +46,7 @@ pub use look::Look;
 pub use sound::Sound;
 pub use source::Source;
 pub use window::Window;
-pub use wire::Wire;
+pub use wire::{Turns, Wire};
 
 use section::{Key, Section};
 

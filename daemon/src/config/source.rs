@@ -6,7 +6,7 @@ use anyhow::Result;
 
 use super::value::Whole;
 use super::{Config, file};
-use crate::cli::{BackgroundArg, DriveArg, StageArgs, Usage};
+use crate::cli::{BackgroundArg, DriveArg, StageArgs, Usage, WireArgs};
 use crate::health::Door;
 
 /// Where a live face's configuration comes from; asked again when the file has changed.
@@ -14,17 +14,17 @@ use crate::health::Door;
 pub struct Source {
     file: Option<PathBuf>,
     flags: StageArgs,
-    listen: Option<String>,
+    wire: WireArgs,
     http: Option<Door>,
 }
 
 impl Source {
-    /// What the command line says: `listen` is the daemon's own flag.
-    pub fn new(stage: &StageArgs, listen: Option<&str>) -> Self {
+    /// What the command line says.
+    pub fn new(stage: &StageArgs, wire: &WireArgs) -> Self {
         Self {
             file: stage.config.clone().or_else(file::user_default),
             flags: stage.clone(),
-            listen: listen.map(str::to_owned),
+            wire: wire.clone(),
             http: None,
         }
     }
@@ -46,8 +46,11 @@ impl Source {
             None => Config::default(),
         };
         self.flags.lay_over(&mut config);
-        if let Some(listen) = &self.listen {
-            config.wire.listen = Some(listen.clone());
+        if !self.wire.listen.is_empty() {
+            config.wire.listen.clone_from(&self.wire.listen);
+        }
+        if self.wire.token_file.is_some() {
+            config.wire.token_file.clone_from(&self.wire.token_file);
         }
         set(&mut config.health.http, self.http.as_ref());
         DriveArg::check(&config.drive.to).map_err(|why| Usage(format!("--drive: {why}")))?;

@@ -10,6 +10,7 @@ use serde::{Deserialize, Deserializer, Serialize, Serializer};
 
 use super::captions::CaptionStyle;
 use super::log::Level;
+use super::wire::Turns;
 use crate::cli::{BackgroundArg, DriveArg, LiveTierArg, Size, SkinArg, StateArg, TissueArg};
 use crate::health::Door;
 
@@ -99,6 +100,20 @@ impl FromStr for Rotation {
     }
 }
 
+/// A text, or a list of them.
+pub fn one_or_more<'de, D: Deserializer<'de>>(from: D) -> Result<Vec<String>, D::Error> {
+    #[derive(Deserialize)]
+    #[serde(untagged, expecting = "write a text or a list of texts")]
+    enum Texts {
+        One(String),
+        More(Vec<String>),
+    }
+    Ok(match Texts::deserialize(from)? {
+        Texts::One(text) => vec![text],
+        Texts::More(texts) => texts,
+    })
+}
+
 /// A value that the command line writes as text is written so in the file, too.
 fn text<'de, T, D>(from: D) -> Result<T, D::Error>
 where
@@ -160,5 +175,6 @@ as_word!(
     LiveTierArg,
     SkinArg,
     StateArg,
-    TissueArg
+    TissueArg,
+    Turns
 );

@@ -1,7 +1,7 @@
-//! Where a daemon listens: a Unix socket or a port on loopback.
+//! Where a daemon listens: a Unix socket, a TCP port, a WebSocket's port.
 
 use std::fmt;
-use std::net::{IpAddr, SocketAddr, ToSocketAddrs as _};
+use std::net::{SocketAddr, ToSocketAddrs as _};
 use std::path::{Path, PathBuf};
 
 use anyhow::{Context as _, Result, bail};
@@ -14,35 +14,25 @@ const SOCKET_NAME: &str = "mouthpiece.sock";
 pub enum Address {
     /// A socket file.
     Unix(PathBuf),
-    /// A port that only this machine reaches.
-    Loopback(SocketAddr),
+    /// Lines over TCP.
+    Tcp(SocketAddr),
+    /// Frames of a WebSocket.
+    WebSocket(SocketAddr),
 }
 
 impl Address {
-    /// Reads `unix:PATH`, a path with a slash in it, or `HOST:PORT`; never an address that other
-    /// machines reach, since there is no authentication yet.
+    /// Reads `unix:PATH`, `ws://HOST:PORT`, a path with a slash in it, or `HOST:PORT`.
     pub fn parse(text: &str) -> Result<Self> {
         if let Some(path) = text.strip_prefix("unix:") {
             return Self::unix(Path::new(path));
         }
+        if let Some(host) = text.strip_prefix("ws://") {
+            return Ok(Self::WebSocket(socket(host.trim_end_matches('/'), text)?));
+        }
         if text.contains('/') {
             return Self::unix(Path::new(text));
         }
-        let addresses = text.to_socket_addrs().with_context(|| {
-            format!("`{text}` is no address; give unix:PATH or 127.0.0.1:PORT to --listen")
-        })?;
-        let all: Vec<SocketAddr> = addresses.collect();
-        if let Some(beyond) = all.iter().find(|a| !a.ip().is_loopback()) {
-            bail!(
-                "{beyond} can be reached from other machines, which is not allowed yet; listen at {}:{}",
-                IpAddr::from([127, 0, 0, 1]),
-                beyond.port()
-            );
-        }
-        let first = all
-            .first()
-            .with_context(|| format!("`{text}` names no address"))?;
-        Ok(Self::Loopback(*first))
+        Ok(Self::Tcp(socket(text, text)?))
     }
 
     /// The default: a socket in the user's runtime directory.
@@ -52,6 +42,22 @@ impl Address {
             None => {
                 bail!("XDG_RUNTIME_DIR is not set; say where to listen with --listen unix:PATH")
             }
+        }
+    }
+
+    /// Those of a configuration, or the default.
+    pub fn all(texts: &[String]) -> Result<Vec<Self>> {
+        if texts.is_empty() {
+            return Ok(vec![Self::user_default()?]);
+        }
+        texts.iter().map(|text| Self::parse(text)).collect()
+    }
+
+    /// Whether other machines reach it.
+    pub fn is_beyond(&self) -> bool {
+        match self {
+            Self::Unix(_) => false,
+            Self::Tcp(address) | Self::WebSocket(address) => !address.ip().is_loopback(),
         }
     }
 
@@ -69,11 +75,25 @@ impl Address {
     }
 }
 
+/// The first address of `host`, which was given as `text`. A name of several machines is not guessed at.
+fn socket(host: &str, text: &str) -> Result<SocketAddr> {
+    let found = host.to_socket_addrs().with_context(|| {
+        format!("`{text}` is no address; give unix:PATH, 127.0.0.1:PORT or ws://127.0.0.1:PORT to --listen")
+    })?;
+    let all: Vec<SocketAddr> = found.collect();
+    let first = all
+        .first()
+        .with_context(|| format!("`{text}` names no address"))?;
+    // A name that means this machine and another must not open a port to the other by chance.
+    Ok(*all.iter().find(|a| !a.ip().is_loopback()).unwrap_or(first))
+}
+
 impl fmt::Display for Address {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
             Self::Unix(path) => write!(f, "unix:{}", path.display()),
-            Self::Loopback(address) => write!(f, "{address}"),
+            Self::Tcp(address) => write!(f, "{address}"),
+            Self::WebSocket(address) => write!(f, "ws://{address}"),
         }
     }
 }
@@ -90,21 +110,19 @@ mod tests {
             Address::parse("/run/face.sock").unwrap(),
             unix("/run/face.sock")
         );
-        let port = Address::parse("127.0.0.1:7716").unwrap();
-        assert_eq!(port.to_string(), "127.0.0.1:7716");
-        assert!(matches!(
-            Address::parse("[::1]:80"),
-            Ok(Address::Loopback(_))
-        ));
-    }
-
-    #[test]
-    fn nobody_beyond_this_machine_gets_in() {
-        for open in ["0.0.0.0:7716", "[::]:7716", "192.0.2.1:7716"] {
-            let why = Address::parse(open).unwrap_err().to_string();
-            assert!(why.contains("127.0.0.1:7716"), "{why}");
+        for text in ["127.0.0.1:7716", "ws://127.0.0.1:7718", "[::1]:80"] {
+            let address = Address::parse(text).unwrap();
+            assert_eq!(address.to_string(), text);
+            assert!(!address.is_beyond());
         }
         assert!(Address::parse("nonsense").is_err());
         assert!(Address::parse(&format!("unix:/{}", "x".repeat(120))).is_err());
+    }
+
+    #[test]
+    fn what_other_machines_reach_is_known() {
+        for open in ["0.0.0.0:7716", "[::]:7716", "ws://192.0.2.1:7716"] {
+            assert!(Address::parse(open).unwrap().is_beyond(), "{open}");
+        }
     }
 }

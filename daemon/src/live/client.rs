@@ -11,7 +11,7 @@ use tokio::io::{AsyncBufReadExt as _, AsyncWriteExt as _, BufReader};
 use tokio::net::{TcpStream, UnixStream};
 
 use super::address::Address;
-use super::connection::Stream;
+use super::connection::peer::Stream;
 use super::source::{Piece, Source};
 use super::stop::Stop;
 use crate::interrupt::Interrupted;
@@ -28,15 +28,26 @@ pub async fn connect(address: &Address) -> std::io::Result<Stream> {
             let (r, w) = UnixStream::connect(path).await?.into_split();
             (Box::new(r), Box::new(w))
         }
-        Address::Loopback(socket) => {
+        Address::Tcp(socket) => {
             let (r, w) = TcpStream::connect(socket).await?.into_split();
             (Box::new(r), Box::new(w))
         }
+        Address::WebSocket(_) => return Err(std::io::ErrorKind::Unsupported.into()),
     })
 }
 
 /// Speaks `source` and waits until it was heard; when the process is asked to end, stops it.
-pub async fn speak((read, mut write): Stream, mut source: Source, stop: &Stop) -> Result<()> {
+pub async fn speak(
+    (read, mut write): Stream,
+    mut source: Source,
+    token: Option<String>,
+    stop: &Stop,
+) -> Result<()> {
+    let gone = "the daemon closed the connection";
+    if let Some(token) = token {
+        let line = ClientMessage::Auth { token }.line()?;
+        write.write_all(line.as_bytes()).await.context(gone)?;
+    }
     let id = format!("say-{}", std::process::id());
     let audio = source.has_sound.then_some(Audio {
         file: None,
@@ -50,7 +61,6 @@ pub async fn speak((read, mut write): Stream, mut source: Source, stop: &Stop) -
         alphabet: None,
         label_rate: Some(RATE_HZ),
     });
-    let gone = "the daemon closed the connection";
     write
         .write_all(begin.line()?.as_bytes())
         .await
@@ -112,7 +122,7 @@ fn heard(line: &str) -> Result<bool> {
         DaemonMessage::Error {
             id: None, message, ..
         } => bail!("the daemon says: {message}"),
-        DaemonMessage::Error { message, .. } => {
+        DaemonMessage::Error { message, .. } | DaemonMessage::Warning { message, .. } => {
             tracing::warn!("the daemon says: {message}");
             Ok(false)
         }

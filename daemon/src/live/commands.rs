@@ -1,5 +1,6 @@
 //! The commands of the live face, each put together from the modules beside this one.
 
+use std::path::PathBuf;
 use std::sync::Arc;
 use std::time::Duration;
 
@@ -15,7 +16,8 @@ use super::deadline;
 use super::faults;
 use super::player::{Handle, Player, Sight};
 use super::reload::{Current, Reload};
-use super::server::Server;
+use super::rules::Rules;
+use super::server::{Server, read_token_text};
 use super::service;
 use super::sound::Choice;
 use super::source::Source;
@@ -23,7 +25,7 @@ use super::speaker;
 use super::stop::Stop;
 use super::sync::{self, Flash, Onsets};
 use super::window::{Display, Look, Wake};
-use crate::cli::{CastArgs, RunArgs, SayArgs, StageArgs};
+use crate::cli::{CastArgs, RunArgs, SayArgs, StageArgs, WireArgs};
 use crate::config::{self, Config};
 use crate::health::Health;
 use crate::interrupt::Interrupted;
@@ -35,21 +37,17 @@ const CLOSE_PATIENCE: Duration = Duration::from_millis(300);
 /// The daemon.
 pub fn run(args: &RunArgs) -> Result<()> {
     let stop = Stop::default();
-    let source = config::Source::new(&args.stage, args.listen.as_deref()).with_http(args.http);
+    let source = config::Source::new(&args.stage, &args.wire).with_http(args.http);
     let net = runtime(&stop, source.file().is_none())?;
     let config = source.load()?;
     if let Some(file) = source.file() {
         tracing::info!(file = %file.display(), "configured");
     }
-    let address = match &config.wire.listen {
-        Some(text) => Address::parse(text)?,
-        None => Address::user_default()?,
-    };
     let look = Look::load(&config)?;
     // First, so that a second daemon ends before it has cost anything.
-    let server = net.block_on(Server::bind(&address))?;
+    let server = net.block_on(Server::bind(&config.wire))?;
     let door = net.block_on(config.health.http.open(None))?;
-    net.spawn(ended_in_time(stop.clone(), address));
+    net.spawn(ended_in_time(stop.clone(), server.socket()));
     let cast = cast(&config)?;
     let onsets = args.test.then(Arc::<Onsets>::default);
     let (player, sight) = start(&cast, &config, onsets.clone())?;
@@ -104,31 +102,36 @@ async fn goodbye(stop: Stop, player: Handle, serving: JoinHandle<()>) {
 }
 
 /// Once the end is asked for, it comes.
-async fn ended_in_time(stop: Stop, address: Address) {
+async fn ended_in_time(stop: Stop, socket: Option<PathBuf>) {
     stop.wait().await;
-    deadline::arm(match address {
-        Address::Unix(path) => Some(path),
-        Address::Loopback(_) => None,
-    });
+    deadline::arm(socket);
 }
 
 /// One utterance: through the daemon where there is one, else in a window of its own.
 pub fn say(args: &SayArgs) -> Result<()> {
     let stop = Stop::default();
     let net = runtime(&stop, true)?;
-    let config = config::Source::new(&args.stage, args.listen.as_deref()).load()?;
-    let address = match &config.wire.listen {
-        Some(text) => Some(Address::parse(text)?),
-        None => Address::user_default().ok(),
+    let config = config::Source::new(&args.stage, &args.wire).load()?;
+    let asked = !args.wire.listen.is_empty();
+    let address = match Address::all(&config.wire.listen) {
+        Ok(all) => all
+            .into_iter()
+            .find(|a| !matches!(a, Address::WebSocket(_))),
+        Err(error) if asked => return Err(error),
+        Err(_) => None,
+    };
+    let token = match (&config.wire.token_file, &address) {
+        (Some(file), Some(Address::Tcp(_))) => Some(read_token_text(file)?),
+        _ => None,
     };
     if let Some(address) = address {
         match net.block_on(client::connect(&address)) {
             Ok(stream) => {
                 let source = Source::open(&args.input)?;
                 tracing::info!(%address, "speaking through the daemon");
-                return net.block_on(client::speak(stream, source, &stop));
+                return net.block_on(client::speak(stream, source, token, &stop));
             }
-            Err(error) if args.listen.is_some() => {
+            Err(error) if asked => {
                 bail!(
                     "no daemon answers at {address} ({error}); start one: mouthpiece run --listen {address}"
                 )
@@ -143,7 +146,7 @@ pub fn say(args: &SayArgs) -> Result<()> {
 pub fn sync_test(stage: &StageArgs, seconds: u32) -> Result<()> {
     let stop = Stop::default();
     let net = runtime(&stop, true)?;
-    let config = config::Source::new(stage, None).load()?;
+    let config = config::Source::new(stage, &WireArgs::default()).load()?;
     let (source, flash) = sync::clicks(seconds)?;
     perform(source, &config, Some(flash), &net, &stop)
 }
@@ -245,12 +248,11 @@ fn start(cast: &Cast, config: &Config, onsets: Option<Arc<Onsets>>) -> Result<(P
         "none" => Choice::Silent,
         id => Choice::Id(id.to_owned()),
     };
-    let look_ahead_ms = u16::try_from(config.sound.look_ahead_ms.get())?;
     Player::start(
         cast,
         choice,
         &config.life,
-        look_ahead_ms,
+        Rules::of(config),
         &config.drive,
         onsets,
     )

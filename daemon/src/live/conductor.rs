@@ -8,7 +8,6 @@
 
 use mouthpiece_phonemes::Segment;
 use mouthpiece_protocol::ErrorCode;
-use mouthpiece_rig::TICK_RATE;
 use mouthpiece_speech::{Delivery, Speech, Track};
 use tokio::sync::mpsc;
 
@@ -17,23 +16,19 @@ use std::thread::Thread;
 use std::time::Duration;
 
 use super::captions::Captions;
+use super::rules::Rules;
 use super::showing::Showing;
 use super::sound::Output;
 use super::sync::{Listening, Onsets};
-use super::time::Flow;
+use super::time::{Flow, seconds};
 use super::utterance::{Begin, Utterance};
 use super::vitals::{DeviceState, Vitals};
+use crate::config::Turns;
 
 /// Commands that wait for the sound thread; who sends more waits.
 pub const COMMANDS_MAX: usize = 64;
 /// Cues that wait for the simulation thread: many times what a client may queue at once.
 pub const CUES_MAX: usize = 1024;
-/// Utterances of all clients that have not ended.
-const UTTERANCES_MAX: usize = 64;
-/// Sound of all of them, ticks: 20 minutes, 230 MB.
-const SOUND_TICKS_MAX: i64 = 20 * 60 * TICK_RATE;
-/// An utterance that has begun and gets nothing more for this long is over.
-const STARVED_TICKS: i64 = 10 * TICK_RATE;
 /// How often the thread looks after the ring, which holds several times as much.
 const TURN: Duration = Duration::from_millis(10);
 
@@ -101,9 +96,10 @@ pub struct Conductor {
     speech: Speech,
     /// In the order of their `begin`; those that speak have a start.
     utterances: Vec<Utterance>,
-    /// How much of an utterance must be there before it begins, ticks: what covers for a sender that
-    /// stutters, and what the mouth knows ahead.
-    look_ahead: i64,
+    rules: Rules,
+    /// What the face is to show from this turn on: the latest of each kind, since each takes the
+    /// simulation back to what is heard.
+    showing: Vec<Showing>,
     block: Vec<f32>,
     quit: bool,
     listening: Option<Listening>,
@@ -115,7 +111,7 @@ impl Conductor {
         output: Output,
         ends: Ends,
         speech: Speech,
-        look_ahead: i64,
+        rules: Rules,
         vitals: Arc<Vitals>,
     ) -> Self {
         Self {
@@ -125,7 +121,8 @@ impl Conductor {
             captioned_alone: false,
             speech,
             utterances: Vec::new(),
-            look_ahead,
+            rules,
+            showing: Vec::new(),
             block: vec![0.0; super::sound::BLOCK_TICKS],
             quit: false,
             listening: None,
@@ -152,6 +149,9 @@ impl Conductor {
                 }
             }
         }
+        for showing in std::mem::take(&mut self.showing) {
+            self.cue(Cue::Show(showing));
+        }
         if self.quit {
             return Flow::End;
         }
@@ -166,10 +166,11 @@ impl Conductor {
 
     fn obey(&mut self, command: Command, now_ns: i64) {
         match command {
-            Command::Begin(begin) => self.begin(begin),
+            Command::Begin(begin) => self.begin(begin, now_ns),
             Command::Segments(key, segments) => {
                 let audible = self.output.audible(now_ns);
                 if let Some(utterance) = self.find(key) {
+                    utterance.fed = audible;
                     let (sent, before) = (segments.len(), utterance.dropped());
                     let begun = utterance.start.is_some();
                     let segments = utterance.add_labels(segments, audible);
@@ -196,17 +197,18 @@ impl Conductor {
                 }
             }
             Command::Stop(Some(key)) => {
-                if let Some(utterance) = self.remove(key) {
-                    self.vitals.sound.stopped.add(1);
-                    self.silence(vec![utterance], now_ns, Utterance::tell_stopped);
-                }
+                let one = self.remove(key).into_iter().collect();
+                self.stop(one, now_ns);
             }
             Command::Stop(None) => {
                 let all = std::mem::take(&mut self.utterances);
-                self.vitals.sound.stopped.add(all.len() as u64);
-                self.silence(all, now_ns, Utterance::tell_stopped);
+                self.stop(all, now_ns);
             }
-            Command::Show(showing) => self.cue(Cue::Show(showing)),
+            Command::Show(showing) => {
+                let kind = std::mem::discriminant(&showing);
+                self.showing.retain(|s| std::mem::discriminant(s) != kind);
+                self.showing.push(showing);
+            }
             Command::Caption(None, _, text) => {
                 self.captioned_alone = true;
                 self.ends.captions.set(text);
@@ -220,24 +222,55 @@ impl Conductor {
         }
     }
 
-    fn begin(&mut self, begin: Begin) {
-        let utterance = Utterance::new(begin);
+    fn begin(&mut self, begin: Begin, now_ns: i64) {
+        let client = begin.client;
+        let utterance = Utterance::new(begin, self.output.audible(now_ns));
         self.vitals.sound.begun.add(1);
-        if self.utterances.len() >= UTTERANCES_MAX {
-            utterance.tell_failed(
-                ErrorCode::Busy,
-                format!("{UTTERANCES_MAX} utterances wait already; begin when one has ended"),
-            );
-            self.vitals.sound.failed.add(1);
-            return;
+        let others = self.utterances.iter().any(|u| u.client != client);
+        if others && self.rules.turns == Turns::Replace {
+            let all = std::mem::take(&mut self.utterances);
+            let (kept, ended) = all.into_iter().partition(|u| u.client == client);
+            self.utterances = kept;
+            self.stop(ended, now_ns);
         }
-        self.utterances.push(utterance);
+        let most = self.rules.utterances_max;
+        let refused = if others && self.rules.turns == Turns::Refuse {
+            Some("another client has the word; begin when it has finished".to_owned())
+        } else if self.utterances.len() >= most {
+            Some(format!(
+                "{most} utterances wait already; begin when one has ended"
+            ))
+        } else {
+            None
+        };
+        match refused {
+            Some(why) => {
+                utterance.tell_failed(ErrorCode::Busy, why);
+                self.vitals.sound.failed.add(1);
+            }
+            None => self.utterances.push(utterance),
+        }
+    }
+
+    fn stop(&mut self, ended: Vec<Utterance>, now_ns: i64) {
+        self.vitals.sound.stopped.add(ended.len() as u64);
+        self.silence(ended, now_ns, Utterance::tell_stopped);
     }
 
     fn sound(&mut self, key: u64, mono: &[f32], now_ns: i64) {
-        let held: i64 = self.utterances.iter().map(Utterance::sound_ticks).sum();
+        let Some(client) = self.find(key).map(|u| u.client) else {
+            return;
+        };
+        let more = i64::try_from(mono.len()).unwrap_or(i64::MAX);
+        let held = |of: &dyn Fn(&&Utterance) -> bool| -> i64 {
+            let held = self.utterances.iter().filter(|u| of(u));
+            held.map(Utterance::sound_ticks).sum::<i64>() + more
+        };
+        let too_much = held(&|_| true) > self.rules.sound_ticks_max
+            || held(&|u| u.client == client) > self.rules.client_ticks_max;
         let written = self.output.written();
-        if held + i64::try_from(mono.len()).unwrap_or(i64::MAX) > SOUND_TICKS_MAX {
+        let audible = self.output.audible(now_ns);
+        if too_much {
             self.obey(
                 Command::Fail(
                     key,
@@ -247,6 +280,7 @@ impl Conductor {
                 now_ns,
             );
         } else if let Some(utterance) = self.find(key) {
+            utterance.fed = audible;
             let before = utterance.dropped();
             let delivery = utterance.add_sound(mono, written);
             let (begun, dropped) = (utterance.start.is_some(), utterance.dropped() - before);
@@ -301,7 +335,7 @@ impl Conductor {
             let Some(next) = self
                 .utterances
                 .iter()
-                .position(|u| u.start.is_none() && u.ready(self.look_ahead))
+                .position(|u| u.start.is_none() && u.ready(self.rules.look_ahead))
             else {
                 break;
             };
@@ -338,16 +372,23 @@ impl Conductor {
                 utterance.tell_finished();
                 self.vitals.sound.finished.add(1);
                 over.push(utterance.key);
-            } else if let Some(start) = utterance.start
-                && !utterance.ended
-                && written - start - utterance.covered() > STARVED_TICKS
-            {
-                utterance.tell_failed(
-                    ErrorCode::Busy,
-                    "nothing came for ten seconds; the utterance is over".to_owned(),
-                );
-                self.vitals.sound.failed.add(1);
-                over.push(utterance.key);
+            } else if !utterance.ended {
+                let (hungry, most) = match utterance.start {
+                    Some(start) => (
+                        written - start - utterance.covered(),
+                        self.rules.starved_ticks,
+                    ),
+                    None => (audible - utterance.fed, self.rules.unbegun_ticks()),
+                };
+                if hungry > most {
+                    let why = format!(
+                        "nothing came for {:.0} seconds; the utterance is over",
+                        seconds(most)
+                    );
+                    utterance.tell_failed(ErrorCode::Busy, why);
+                    self.vitals.sound.failed.add(1);
+                    over.push(utterance.key);
+                }
             }
         }
         for key in over {

@@ -1,96 +1,219 @@
-//! One client: bytes to the protocol's session, its actions to the player, answers back.
+//! One client: what it sends to the protocol's session, the session's actions to the player, answers back.
 //!
-//! A client that reads nothing any more is let go after a while, one that dies in mid sentence
-//! leaves a face that finishes what it has. A client that sends faster than is spoken waits.
+//! Wanted: no client holds up another one, the sound or the picture; each is read at a bounded rate, and
+//! waits when the sound thread has enough; one that takes no answers, says nothing, or keeps its token
+//! to itself is let go, with a word where it still listens; one that dies in mid sentence leaves a face
+//! that finishes what it has. Every utterance that was accepted is told its end once.
 
 mod face;
+pub mod files;
+pub mod peer;
+mod rate;
 
 use std::collections::HashMap;
 use std::path::PathBuf;
 use std::time::Duration;
 
-use mouthpiece_protocol::{Action, DaemonMessage, ErrorCode, Limits, Session, Sound};
-use tokio::io::{AsyncRead, AsyncReadExt as _, AsyncWrite, AsyncWriteExt as _};
+use bytes::Bytes;
+use mouthpiece_protocol::{Action, DaemonMessage, ErrorCode, Limits, Session, Sound, Token};
 use tokio::sync::mpsc;
+use tokio::time::Instant;
 
 use super::player::Handle;
 use super::sound::resample::Resample;
 use super::utterance::{ANSWERS_MAX, Begin};
 use crate::media::wav;
+use files::Files;
+use peer::{Heard, Peer};
+use rate::Rate;
 
-/// Bytes read at once.
-const READ_BYTES: usize = 64 * 1024;
-/// A client that takes nothing for this long is gone.
-const WRITE_PATIENCE: Duration = Duration::from_secs(5);
+/// Bytes that are acted on before the rate is looked at again: 4096 lines at most.
+const SLICE_BYTES: usize = 4096;
 /// Samples of a file handed over at once, so that none waits long for the channel.
 const FILE_PIECE: usize = 48_000;
 /// The rate of everything behind the socket.
 const RATE_HZ: u32 = 48_000;
+/// A client is told that it is read slowly no more often than this.
+const SLOWED_AGAIN: Duration = Duration::from_secs(10);
 
-/// Both halves of a client's connection.
-pub type Stream = (
-    Box<dyn AsyncRead + Send + Sync + Unpin>,
-    Box<dyn AsyncWrite + Send + Sync + Unpin>,
-);
+/// What holds for a connection.
+#[derive(Clone, Debug)]
+pub struct Terms {
+    pub limits: Limits,
+    /// Wanted first, where it is set.
+    pub token: Option<Token>,
+    pub files: Files,
+    /// A client that takes no answer for so long is gone.
+    pub write_patience: Duration,
+}
 
-/// Serves a client until it is gone and all it began has ended.
-pub async fn serve((mut read, write): Stream, handle: Handle, limits: Limits) {
-    let (answers, mut told) = mpsc::channel(ANSWERS_MAX);
-    let mut client = Client {
-        session: Session::new(limits),
+/// Serves client number `number` until it is gone and all it began has ended.
+pub async fn serve(peer: Peer, handle: Handle, terms: Terms, number: u64) {
+    let (answers, told) = mpsc::channel(ANSWERS_MAX);
+    let now = Instant::now();
+    let session = match &terms.token {
+        Some(token) => Session::guarded(terms.limits.clone(), token.clone()),
+        None => Session::new(terms.limits.clone()),
+    };
+    let client = Client {
+        number,
+        session,
         handle,
         answers,
-        write,
+        peer,
+        lines: Rate::new(terms.limits.lines_per_second, now),
+        bytes: Rate::new(terms.limits.bytes_per_second, now),
+        paused: now,
+        slowed: None,
+        rest: Bytes::new(),
+        heard: now,
         keys: HashMap::new(),
         streams: HashMap::new(),
+        terms,
     };
-    let mut bytes = vec![0; READ_BYTES];
-    let mut actions = Vec::new();
-    let mut sending = true;
-    let closing = client.handle.closing().clone();
-    while sending || client.session.has_pending() {
-        let alive = tokio::select! {
-            got = read.read(&mut bytes), if sending => {
-                match got {
-                    Ok(0) | Err(_) => {
-                        sending = false;
-                        client.session.closed(&mut actions);
-                    }
-                    Ok(n) => client.session.receive(&bytes[..n], &mut actions),
-                }
-                client.act(&mut actions).await
-            }
-            Some(message) = told.recv() => client.answer(message).await,
-            // What it began is being stopped: it hears of that, and no more of it is listened to.
-            () = closing.cancelled(), if sending => {
-                sending = false;
-                client.session.closed(&mut actions);
-                client.act(&mut actions).await
-            }
-        };
-        if let Err(error) = alive {
-            tracing::debug!(%error, "a client is gone");
-            // What it began is finished without it.
-            client.session.closed(&mut actions);
-            actions.retain(|a| !matches!(a, Action::Reply(_)));
-            let _ = client.act(&mut actions).await;
-            return;
-        }
-    }
+    client.run(told).await;
 }
 
 struct Client {
+    number: u64,
+    terms: Terms,
     session: Session,
     handle: Handle,
     answers: mpsc::Sender<DaemonMessage>,
-    write: Box<dyn AsyncWrite + Send + Sync + Unpin>,
+    peer: Peer,
+    lines: Rate,
+    bytes: Rate,
+    /// Nothing more is read until then.
+    paused: Instant,
+    /// When it was last told so.
+    slowed: Option<Instant>,
+    /// Read and not yet acted on.
+    rest: Bytes,
+    /// When its last whole message came, or its last utterance ended.
+    heard: Instant,
     /// The player's numbers of utterances that have not ended, by the client's ids.
     keys: HashMap<String, u64>,
     /// Resamplers of those whose sound is being sent.
     streams: HashMap<u64, Resample>,
 }
 
+/// What happens next.
+enum Event {
+    Heard(Heard),
+    Told(DaemonMessage),
+    /// It has said nothing for too long.
+    Silent,
+    /// The process ends.
+    Closing,
+}
+
 impl Client {
+    async fn run(mut self, mut told: mpsc::Receiver<DaemonMessage>) {
+        let began = Instant::now();
+        let mut actions = Vec::new();
+        let mut sending = true;
+        let closing = self.handle.closing().clone();
+        while sending || self.session.has_pending() {
+            let silent = self.patience(began);
+            let event = tokio::select! {
+                Some(message) = told.recv() => Event::Told(message),
+                heard = self.hear(), if sending => Event::Heard(heard),
+                () = tokio::time::sleep_until(silent.unwrap_or(began)), if sending && silent.is_some() => Event::Silent,
+                () = closing.cancelled(), if sending => Event::Closing,
+            };
+            let alive = match event {
+                Event::Told(message) => self.answer(message).await,
+                Event::Heard(Heard::Over { answers }) => {
+                    sending = false;
+                    self.session.closed(&mut actions);
+                    let done = self.act(&mut actions).await;
+                    if answers { done } else { Err(gone()) }
+                }
+                Event::Heard(heard) => self.take(heard, &mut actions).await,
+                // What it began is being stopped: it hears of that, and no more of it is listened to.
+                Event::Closing => {
+                    sending = false;
+                    self.session.closed(&mut actions);
+                    self.act(&mut actions).await
+                }
+                Event::Silent => {
+                    let message = silence(self.session.is_trusted(), &self.terms.limits);
+                    // Whether it is taken or not, that was it.
+                    let _ = self.send(&message).await;
+                    Err(gone())
+                }
+            };
+            if let Err(error) = alive {
+                tracing::debug!(client = self.number, %error, "a client is gone");
+                // What it began is finished without it.
+                self.session.closed(&mut actions);
+                actions.retain(|a| !matches!(a, Action::Reply(_) | Action::Close));
+                let _ = self.act(&mut actions).await;
+                break;
+            }
+        }
+        self.peer.close(self.terms.write_patience).await;
+    }
+
+    /// When it has been silent for too long; never while something of its own is still to be heard.
+    fn patience(&self, began: Instant) -> Option<Instant> {
+        let limits = &self.terms.limits;
+        let seconds = |n: u32| Duration::from_secs(u64::from(n));
+        if !self.session.is_trusted() {
+            return Some(began + seconds(limits.auth_seconds));
+        }
+        (!self.session.has_pending()).then(|| self.heard + seconds(limits.silent_seconds))
+    }
+
+    /// What is to be acted on next, once the rate allows it.
+    async fn hear(&mut self) -> Heard {
+        tokio::time::sleep_until(self.paused).await;
+        if self.rest.is_empty() {
+            match self.peer.hear().await {
+                Heard::Bytes(bytes) => self.rest = bytes,
+                frame => return frame,
+            }
+        }
+        let slice = self.rest.len().min(SLICE_BYTES);
+        Heard::Bytes(self.rest.split_to(slice))
+    }
+
+    async fn take(&mut self, heard: Heard, actions: &mut Vec<Action>) -> std::io::Result<()> {
+        let before = self.session.taken();
+        let bytes = match heard {
+            Heard::Bytes(bytes) => {
+                self.session.receive(&bytes, actions);
+                bytes.len()
+            }
+            Heard::Text(text) => {
+                self.session.receive_text(&text, actions);
+                text.len()
+            }
+            Heard::Sound(bytes) => {
+                self.session.receive_sound(&bytes, actions);
+                bytes.len()
+            }
+            Heard::Over { .. } => 0,
+        };
+        let lines = self.session.taken() - before;
+        let now = Instant::now();
+        if lines > 0 {
+            self.heard = now;
+        }
+        let wait = self.lines.take(lines as f64, now);
+        let wait = wait.max(self.bytes.take(bytes as f64, now));
+        self.act(actions).await?;
+        if wait > Duration::ZERO {
+            self.paused = now + wait;
+            if self.slowed.is_none_or(|at| now - at > SLOWED_AGAIN) {
+                self.slowed = Some(now);
+                let message = slowness(&self.terms.limits);
+                self.send(&message).await?;
+            }
+        }
+        Ok(())
+    }
+
     async fn act(&mut self, actions: &mut Vec<Action>) -> std::io::Result<()> {
         for action in actions.drain(..) {
             match action {
@@ -111,12 +234,15 @@ impl Client {
                 }
                 Action::Express(express) => match face::express(&express) {
                     Ok(showing) => self.handle.show(showing).await,
-                    Err(error) => self.send(&refused(error.to_string())).await?,
+                    Err(error) => {
+                        let message = refusal(ErrorCode::Face, error.to_string());
+                        self.send(&message).await?;
+                    }
                 },
                 Action::Look(look) => self.handle.show(face::look(&look)).await,
                 Action::State(state) => self.handle.show(face::state(state)).await,
                 Action::Caption { id, start, text } => self.caption(id, start, text).await,
-                Action::Close => return Err(std::io::ErrorKind::ConnectionAborted.into()),
+                Action::Close => return Err(gone()),
             }
         }
         Ok(())
@@ -127,6 +253,7 @@ impl Client {
         self.keys.insert(id.clone(), key);
         let begin = Begin {
             key,
+            client: self.number,
             id,
             has_sound: sound != Sound::Silent,
             answers: self.answers.clone(),
@@ -147,14 +274,29 @@ impl Client {
 
     /// Reads a sound file; the client's further messages wait until it is read.
     async fn file(&self, key: u64, path: PathBuf) {
-        let read = tokio::task::spawn_blocking(move || wav::read(&path)).await;
-        match read {
+        let (files, seconds) = (
+            self.terms.files.clone(),
+            self.terms.limits.utterance_seconds,
+        );
+        let read = tokio::task::spawn_blocking(move || {
+            let file = files.open(&path)?;
+            let bytes = files::read(file, files::bytes_max(seconds))?;
+            let name = path.display().to_string();
+            let sound = wav::decode(&bytes[..], &name).map_err(|error| error.to_string())?;
+            if sound.frames.len() as u64 > u64::from(seconds) * u64::from(RATE_HZ) {
+                return Err(format!(
+                    "{name} is longer than the {seconds} s of an utterance"
+                ));
+            }
+            Ok(sound)
+        });
+        match read.await {
             Ok(Ok(sound)) => {
                 for piece in sound.frames.chunks(FILE_PIECE) {
                     self.handle.sound(key, piece.to_vec()).await;
                 }
             }
-            Ok(Err(error)) => self.fail(key, error.to_string()).await,
+            Ok(Err(why)) => self.fail(key, why).await,
             Err(error) => self.fail(key, error.to_string()).await,
         }
     }
@@ -208,6 +350,7 @@ impl Client {
             if !self.session.ended(id) {
                 return Ok(());
             }
+            self.heard = Instant::now();
             if let Some(key) = self.keys.remove(id) {
                 self.streams.remove(&key);
             }
@@ -216,19 +359,43 @@ impl Client {
     }
 
     async fn send(&mut self, message: &DaemonMessage) -> std::io::Result<()> {
-        let line = message.line();
-        tokio::time::timeout(WRITE_PATIENCE, self.write.write_all(line.as_bytes()))
-            .await
-            .map_err(|_| std::io::Error::from(std::io::ErrorKind::TimedOut))?
+        let patience = self.terms.write_patience;
+        self.peer.send(message.line(), patience).await
     }
 }
 
-/// What is answered when a face cannot be shown.
-fn refused(message: String) -> DaemonMessage {
+fn gone() -> std::io::Error {
+    std::io::ErrorKind::ConnectionAborted.into()
+}
+
+/// An error that is about no utterance.
+pub fn refusal(code: ErrorCode, message: String) -> DaemonMessage {
     DaemonMessage::Error {
         id: None,
-        code: ErrorCode::Face,
+        code,
         message,
         fatal: false,
     }
+}
+
+/// The last word to a client that has none.
+fn silence(trusted: bool, limits: &Limits) -> DaemonMessage {
+    if trusted {
+        let message = format!(
+            "nothing came for {} s, so the connection is closed; send a `ping` now and then",
+            limits.silent_seconds
+        );
+        refusal(ErrorCode::Limit, message)
+    } else {
+        let message = format!("no token came within {} s", limits.auth_seconds);
+        refusal(ErrorCode::Auth, message)
+    }
+}
+
+fn slowness(limits: &Limits) -> DaemonMessage {
+    let message = format!(
+        "more than {} lines or {} bytes came in a second; the rest is read as slowly as that",
+        limits.lines_per_second, limits.bytes_per_second
+    );
+    refusal(ErrorCode::Limit, message)
 }

@@ -4,7 +4,7 @@
 //! |---|---|---|
 //! | main | [`window`] | draws the head as it is at the audible instant of the picture |
 //! | `simulation` | [`face`], [`score`], [`showing`] | moves the head, a bounded lead ahead (HABER 5.3) |
-//! | `sound` | [`conductor`], [`utterance`], [`sound`] | utterances in turn, mixed into the device's ring |
+//! | `sound` | [`conductor`], [`utterance`], [`rules`], [`sound`] | utterances in turn, mixed into the device's ring |
 //! | the device's own | `sound::callback` | takes from the ring, stamps the clock |
 //! | `puppet` | [`puppet`] | drives other avatars over UDP, where asked |
 //! | `net` | [`server`], [`connection`] | sockets; nothing real-time |
@@ -32,6 +32,7 @@ mod motion;
 mod player;
 mod puppet;
 mod reload;
+mod rules;
 mod score;
 mod server;
 mod service;

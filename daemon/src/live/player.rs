@@ -18,6 +18,7 @@ use super::conductor::{COMMANDS_MAX, CUES_MAX, Command, Conductor, Ends};
 use super::face::Face;
 use super::frames::{FrameReader, key_frames};
 use super::puppet::Puppeteer;
+use super::rules::Rules;
 use super::score::Score;
 use super::shots::Shots;
 use super::showing::Showing;
@@ -66,13 +67,12 @@ pub struct Handle {
 }
 
 impl Player {
-    /// Starts both threads. `life` is what the face does by itself, `look_ahead_ms` how much of an utterance that is still
-    /// coming in must be there before it begins. `onsets` learn of clicks in what is said.
+    /// Starts both threads. `life` is what the face does by itself. `onsets` learn of clicks in what is said.
     pub fn start(
         cast: &Cast,
         choice: Choice,
         life: &config::Life,
-        look_ahead_ms: u16,
+        rules: Rules,
         avatars: &Drive,
         onsets: Option<Arc<Onsets>>,
     ) -> Result<(Self, Sight)> {
@@ -116,7 +116,6 @@ impl Player {
 
         let face = simulation.thread().clone();
         let speech = cast.speech.clone();
-        let look_ahead = i64::from(look_ahead_ms) * TICK_RATE / 1000;
         let captions = Arc::new(Captions::default());
         let written = Arc::clone(&captions);
         let sound_cell = Arc::clone(&cell);
@@ -132,7 +131,7 @@ impl Player {
                 face: Some(face),
                 captions: written,
             };
-            let mut conductor = Conductor::new(output, ends, speech, look_ahead, sound_vitals);
+            let mut conductor = Conductor::new(output, ends, speech, rules, sound_vitals);
             if let Some(onsets) = onsets {
                 conductor.listen(onsets);
             }

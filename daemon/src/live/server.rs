@@ -1,176 +1,286 @@
-//! The daemon's ear: binds the address, takes clients in, a bounded number at a time.
+//! The daemon's ear: binds its addresses and takes clients in, a bounded number at a time.
+//!
+//! | address | who comes in | sound files |
+//! |---|---|---|
+//! | Unix socket | its user; a group where one is named | any; with a group those below `files` |
+//! | TCP | whoever is on this machine, or has the token where one is set | below `files` |
+//! | WebSocket | the same, from pages of this host and those that are listed | below `files` |
+//!
+//! Nothing listens beyond this machine without a token.
 
-use std::io::ErrorKind;
-use std::os::unix::fs::{FileTypeExt as _, PermissionsExt as _};
+mod unix;
+mod websocket;
+
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
+use std::sync::atomic::{AtomicU64, Ordering};
+use std::time::Duration;
 
 use anyhow::{Context as _, Result, bail};
-use mouthpiece_protocol::{DaemonMessage, ErrorCode, Limits};
-use tokio::io::AsyncWriteExt as _;
-use tokio::net::{TcpListener, UnixListener};
+use mouthpiece_protocol::{ErrorCode, Token};
+use socket2::{SockRef, TcpKeepalive};
+use tokio::net::{TcpListener, TcpStream, UnixListener};
 use tokio::sync::Semaphore;
+use tokio::task::JoinSet;
 use tokio_util::task::TaskTracker;
 
 use super::address::Address;
-use super::connection::{self, Stream};
+use super::connection::files::Files;
+use super::connection::peer::Peer;
+use super::connection::{self, Terms, refusal};
 use super::player::Handle;
+use crate::config::Wire;
+use unix::SocketFile;
+use websocket::Guard;
 
-/// Clients at a time: each may hold a line of a megabyte and its answers.
-const CLIENTS_MAX: usize = 32;
+/// How long a TCP client may be unreachable before it counts as gone: half of a connection can be left
+/// open by a machine that lost its power.
+const KEEPALIVE: (Duration, Duration, u32) = (Duration::from_secs(30), Duration::from_secs(10), 3);
 
-/// A bound socket.
+/// Bound sockets.
 pub struct Server {
-    listener: Listener,
-    limits: Limits,
+    ears: Vec<Ear>,
+    clients: usize,
+    write_patience: Duration,
     /// Held until the daemon ends.
-    _file: Option<SocketFile>,
+    files: Vec<SocketFile>,
+}
+
+/// One of them, and what holds for who comes in there.
+struct Ear {
+    listener: Listener,
+    terms: Terms,
 }
 
 enum Listener {
     Unix(UnixListener),
     Tcp(TcpListener),
+    WebSocket(TcpListener, Guard),
 }
 
-/// Removes the socket file when the daemon ends.
-struct SocketFile(PathBuf);
-
-impl Drop for SocketFile {
-    fn drop(&mut self) {
-        if let Err(error) = std::fs::remove_file(&self.0) {
-            tracing::debug!(path = %self.0.display(), %error, "the socket file stays");
-        }
-    }
+/// What all of them share while they serve.
+struct Room {
+    handle: Handle,
+    served: TaskTracker,
+    places: Arc<Semaphore>,
+    clients: usize,
+    write_patience: Duration,
+    next: AtomicU64,
 }
 
 impl Server {
-    /// Binds `address`; a socket that another daemon answers at is refused. Call inside the runtime.
-    pub async fn bind(address: &Address) -> Result<Self> {
-        let (listener, file) = match address {
-            Address::Unix(path) => {
-                let listener = Listener::Unix(bind_unix(path).await?);
-                (listener, Some(SocketFile(path.clone())))
-            }
-            Address::Loopback(socket) => {
-                let bound = TcpListener::bind(socket).await;
-                let bound = bound.with_context(|| {
-                    format!("cannot listen at {socket}; give --listen another port")
-                })?;
-                (Listener::Tcp(bound), None)
-            }
+    /// Binds what `wire` says; a socket that another daemon answers at is refused. Call inside the runtime.
+    pub async fn bind(wire: &Wire) -> Result<Self> {
+        let token = wire.token_file.as_deref().map(read_token).transpose()?;
+        let below = match &wire.files {
+            Some(folder) => Some(Files::below(folder)?),
+            None => None,
         };
-        let limits = Limits {
-            // Any user of this machine can connect to a port, but not read this user's files.
-            files: matches!(address, Address::Unix(_)),
-            ..Limits::default()
+        let seconds = u64::try_from(wire.write_seconds.get()).unwrap_or(1);
+        let write_patience = Duration::from_secs(seconds);
+        let terms = |token: Option<Token>, files: Files| Terms {
+            limits: wire.limits(files != Files::None),
+            token,
+            files,
+            write_patience,
         };
-        tracing::info!(%address, "listening");
+        let (mut ears, mut files) = (Vec::new(), Vec::new());
+        for address in Address::all(&wire.listen)? {
+            if address.is_beyond() && token.is_none() {
+                bail!(
+                    "{address} can be reached from other machines; set a token with --token-file, or listen on 127.0.0.1"
+                );
+            }
+            let far = below.clone().unwrap_or(Files::None);
+            let ear = match &address {
+                Address::Unix(path) => {
+                    let (listener, file) = unix::bind(path, wire.group.as_deref()).await?;
+                    files.push(file);
+                    let near = match (&below, &wire.group) {
+                        (None, None) => Files::below(Path::new("/"))?,
+                        _ => far,
+                    };
+                    Ear {
+                        listener: Listener::Unix(listener),
+                        terms: terms(None, near),
+                    }
+                }
+                Address::Tcp(socket) => Ear {
+                    listener: Listener::Tcp(bind_tcp(*socket).await?),
+                    terms: terms(token.clone(), far),
+                },
+                Address::WebSocket(socket) => {
+                    let terms = terms(token.clone(), far);
+                    let guard = Guard {
+                        origins: wire.origins.clone(),
+                        token: token.clone(),
+                        frame_bytes: terms.limits.line_bytes,
+                    };
+                    let bound = bind_tcp(*socket).await?;
+                    Ear {
+                        listener: Listener::WebSocket(bound, guard),
+                        terms,
+                    }
+                }
+            };
+            tracing::info!(%address, "listening");
+            ears.push(ear);
+        }
         Ok(Self {
-            listener,
-            limits,
-            _file: file,
+            ears,
+            clients: usize::try_from(wire.clients.get()).unwrap_or(1),
+            write_patience,
+            files,
         })
+    }
+
+    /// The file of its Unix socket.
+    pub fn socket(&self) -> Option<PathBuf> {
+        self.files.first().map(|file| file.path().to_owned())
     }
 
     /// Serves clients until the process ends and they have heard of it.
     pub async fn serve(self, handle: Handle) {
-        let room = Arc::new(Semaphore::new(CLIENTS_MAX));
         let served = TaskTracker::new();
-        let closing = handle.closing().clone();
-        while let Some(accepted) = closing.run_until_cancelled(self.accept()).await {
-            let stream: Stream = match accepted {
-                Ok(stream) => stream,
-                Err(error) => {
-                    // Out of file handles, mostly: others must close first.
-                    tracing::warn!(%error, "a client could not be taken in");
-                    tokio::time::sleep(std::time::Duration::from_millis(100)).await;
-                    continue;
-                }
-            };
-            match Arc::clone(&room).try_acquire_owned() {
-                Ok(permit) => {
-                    let (handle, limits) = (handle.clone(), self.limits.clone());
-                    served.spawn(async move {
-                        let net = &Arc::clone(handle.vitals()).net;
-                        net.connected.add(1);
-                        net.clients.add(1);
-                        connection::serve(stream, handle, limits).await;
-                        net.clients.add(-1);
-                        drop(permit);
-                    });
-                }
-                Err(_) => {
-                    handle.vitals().net.turned_away.add(1);
-                    turn_away(stream).await;
-                }
-            }
+        let room = Arc::new(Room {
+            handle,
+            served: served.clone(),
+            places: Arc::new(Semaphore::new(self.clients)),
+            clients: self.clients,
+            write_patience: self.write_patience,
+            next: AtomicU64::new(0),
+        });
+        let mut ears = JoinSet::new();
+        for ear in self.ears {
+            ears.spawn(ear.serve(Arc::clone(&room)));
         }
+        while ears.join_next().await.is_some() {}
         // Nobody is to find a socket that is not listened at.
-        drop(self);
+        drop(self.files);
         served.close();
         served.wait().await;
     }
+}
 
-    async fn accept(&self) -> std::io::Result<Stream> {
-        match &self.listener {
-            Listener::Unix(listener) => listener.accept().await.map(|(s, _)| {
-                let (r, w) = s.into_split();
-                (Box::new(r) as _, Box::new(w) as _)
-            }),
-            Listener::Tcp(listener) => listener.accept().await.map(|(s, _)| {
-                let (r, w) = s.into_split();
-                (Box::new(r) as _, Box::new(w) as _)
-            }),
+/// A stream that was accepted and is not yet a client.
+enum Caller {
+    Peer(Peer),
+    WebSocket(TcpStream, Guard),
+}
+
+impl Ear {
+    async fn serve(self, room: Arc<Room>) {
+        let closing = room.handle.closing().clone();
+        while let Some(accepted) = closing.run_until_cancelled(self.accept()).await {
+            let caller = match accepted {
+                Ok(caller) => caller,
+                Err(error) => {
+                    // Out of file handles, mostly: others must close first.
+                    tracing::warn!(%error, "a client could not be taken in");
+                    tokio::time::sleep(Duration::from_millis(100)).await;
+                    continue;
+                }
+            };
+            let vitals = &room.handle.vitals().net;
+            let Ok(place) = Arc::clone(&room.places).try_acquire_owned() else {
+                vitals.turned_away.add(1);
+                turn_away(caller, &room).await;
+                continue;
+            };
+            vitals.connected.add(1);
+            vitals.clients.add(1);
+            let terms = self.terms.clone();
+            let tracker = room.served.clone();
+            let room = Arc::clone(&room);
+            tracker.spawn(async move {
+                welcome(caller, &room, terms).await;
+                room.handle.vitals().net.clients.add(-1);
+                drop(place);
+            });
         }
     }
+
+    async fn accept(&self) -> std::io::Result<Caller> {
+        Ok(match &self.listener {
+            Listener::Unix(listener) => {
+                let (r, w) = listener.accept().await?.0.into_split();
+                Caller::Peer(Peer::Lines((Box::new(r), Box::new(w))))
+            }
+            Listener::Tcp(listener) => {
+                let stream = listener.accept().await?.0;
+                prepare(&stream)?;
+                let (r, w) = stream.into_split();
+                Caller::Peer(Peer::Lines((Box::new(r), Box::new(w))))
+            }
+            Listener::WebSocket(listener, guard) => {
+                let stream = listener.accept().await?.0;
+                prepare(&stream)?;
+                Caller::WebSocket(stream, guard.clone())
+            }
+        })
+    }
+}
+
+/// Serves a caller to the end.
+async fn welcome(caller: Caller, room: &Room, mut terms: Terms) {
+    let number = room.next.fetch_add(1, Ordering::Relaxed);
+    let peer = match caller {
+        Caller::Peer(peer) => peer,
+        Caller::WebSocket(stream, guard) => match guard.welcome(stream).await {
+            Ok((socket, trusted)) => {
+                if trusted {
+                    terms.token = None;
+                }
+                Peer::Frames(socket)
+            }
+            Err(why) => {
+                tracing::debug!(client = number, why, "a WebSocket was refused");
+                return;
+            }
+        },
+    };
+    connection::serve(peer, room.handle.clone(), terms, number).await;
 }
 
 /// Says why and closes: the one case without a connection to go on with.
-async fn turn_away((_, mut write): Stream) {
-    let message = DaemonMessage::Error {
-        id: None,
-        code: ErrorCode::Busy,
-        message: format!("{CLIENTS_MAX} clients are connected already; try again later"),
-        fatal: false,
-    };
-    tracing::warn!("{CLIENTS_MAX} clients are connected; another was turned away");
-    // The answer fits the socket's buffer, so this does not wait.
-    let _ = write.write_all(message.line().as_bytes()).await;
+async fn turn_away(caller: Caller, room: &Room) {
+    let clients = room.clients;
+    tracing::warn!("{clients} clients are connected; another was turned away");
+    if let Caller::Peer(mut peer) = caller {
+        let why = format!("{clients} clients are connected already; try again later");
+        let line = refusal(ErrorCode::Busy, why).line();
+        // The answer fits the socket's buffer, so this does not wait.
+        let _ = peer.send(line, room.write_patience).await;
+    }
 }
 
-/// Binds a socket file that only its user can open. The file appears under its name when it is
-/// ready, in place of one that nobody answers at any more.
-async fn bind_unix(path: &Path) -> Result<UnixListener> {
-    let name = path.display();
-    match tokio::net::UnixStream::connect(path).await {
-        Ok(_) => {
-            bail!("another mouthpiece listens at {name}; end it, or give --listen another place")
-        }
-        Err(error) if error.kind() == ErrorKind::NotFound => {}
-        Err(error) => match std::fs::symlink_metadata(path) {
-            Ok(there) if there.file_type().is_socket() => {
-                tracing::info!(path = %name, "replacing the socket of a daemon that is gone");
-            }
-            Ok(_) => bail!("{name} is there and is no socket; give --listen another place"),
-            Err(_) => return Err(error).with_context(|| format!("cannot look at {name}")),
-        },
+async fn bind_tcp(address: std::net::SocketAddr) -> Result<TcpListener> {
+    let bound = TcpListener::bind(address).await;
+    bound.with_context(|| format!("cannot listen at {address}; give --listen another port"))
+}
+
+/// Small answers leave at once, and a client that is gone without a word is noticed.
+fn prepare(stream: &TcpStream) -> std::io::Result<()> {
+    stream.set_nodelay(true)?;
+    let (time, interval, retries) = KEEPALIVE;
+    let keepalive = TcpKeepalive::new().with_time(time).with_interval(interval);
+    SockRef::from(stream).set_tcp_keepalive(&keepalive.with_retries(retries))
+}
+
+fn read_token(file: &Path) -> Result<Token> {
+    Token::new(&read_token_text(file)?)
+        .with_context(|| format!("the token file {} holds no token", file.display()))
+}
+
+/// What `file` holds, which not everybody may be able to read.
+pub fn read_token_text(file: &Path) -> Result<String> {
+    use std::os::unix::fs::PermissionsExt as _;
+    let name = file.display();
+    let text = std::fs::read_to_string(file)
+        .with_context(|| format!("the token file {name} cannot be read"))?;
+    let mode = std::fs::metadata(file)?.permissions().mode();
+    if mode & 0o007 != 0 {
+        bail!("everybody on this machine can read the token in {name}; chmod 600 {name}");
     }
-    let mut fresh = path.as_os_str().to_owned();
-    fresh.push(format!(".{}", std::process::id()));
-    let fresh = PathBuf::from(fresh);
-    // Left by a process of the same number that died in between.
-    let _ = std::fs::remove_file(&fresh);
-    let bound = UnixListener::bind(&fresh)
-        .and_then(|listener| {
-            std::fs::set_permissions(&fresh, std::fs::Permissions::from_mode(0o600))?;
-            std::fs::rename(&fresh, path)?;
-            Ok(listener)
-        })
-        .with_context(|| {
-            format!("cannot listen at {name}; does its folder exist, and is it yours?")
-        });
-    if bound.is_err() {
-        let _ = std::fs::remove_file(&fresh);
-    }
-    bound
+    Ok(text.trim().to_owned())
 }

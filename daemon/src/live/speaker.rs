@@ -25,6 +25,7 @@ pub async fn speak(
     let key = handle.new_key();
     let begin = Begin {
         key,
+        client: 0,
         id: "say".to_owned(),
         has_sound: source.has_sound,
         answers,

@@ -24,6 +24,8 @@ pub type Answers = mpsc::Sender<DaemonMessage>;
 pub struct Begin {
     /// The process's own number for it.
     pub key: u64,
+    /// Whose it is.
+    pub client: u64,
     /// The client's name for it.
     pub id: String,
     /// Whether it has sound; a silent one is as long as its labels.
@@ -40,6 +42,9 @@ pub const NOT_STARTED: i64 = i64::MIN;
 #[derive(Debug)]
 pub(super) struct Utterance {
     pub(super) key: u64,
+    pub(super) client: u64,
+    /// What was heard when something of it came last.
+    pub(super) fed: i64,
     begin: Begin,
     /// 48 kHz, one channel.
     audio: Vec<f32>,
@@ -60,9 +65,12 @@ pub(super) struct Utterance {
 }
 
 impl Utterance {
-    pub(super) fn new(begin: Begin) -> Self {
+    /// `now` is the tick that is heard.
+    pub(super) fn new(begin: Begin, now: i64) -> Self {
         Self {
             key: begin.key,
+            client: begin.client,
+            fed: now,
             begin,
             audio: Vec::new(),
             segments: Vec::new(),

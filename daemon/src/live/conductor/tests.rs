@@ -2,9 +2,10 @@
 
 use mouthpiece_phonemes::Phone;
 use mouthpiece_protocol::DaemonMessage;
-use mouthpiece_rig::{Control, Controls};
+use mouthpiece_rig::{Control, Controls, TICK_RATE};
 
 use super::*;
+use crate::config::Config;
 use crate::live::clock::ClockCell;
 use crate::live::sound::Choice;
 use crate::live::time::Origin;
@@ -23,6 +24,14 @@ struct Stage {
 }
 
 fn stage() -> Stage {
+    stage_with(|_| {})
+}
+
+/// One with other rules than the default.
+fn stage_with(change: impl Fn(&mut Rules)) -> Stage {
+    let mut rules = Rules::of(&Config::default());
+    rules.look_ahead = LOOK_AHEAD;
+    change(&mut rules);
     let origin = Origin::new();
     let output = Output::open(Choice::Silent, Arc::new(ClockCell::default()), origin);
     let (commands, inbox) = mpsc::channel(COMMANDS_MAX);
@@ -41,13 +50,7 @@ fn stage() -> Stage {
         captions: Arc::default(),
     };
     Stage {
-        conductor: Conductor::new(
-            output,
-            ends,
-            speech,
-            LOOK_AHEAD,
-            Arc::new(Vitals::new(origin)),
-        ),
+        conductor: Conductor::new(output, ends, speech, rules, Arc::new(Vitals::new(origin))),
         commands,
         cues,
         answers: mpsc::channel(ANSWERS_MAX),
@@ -64,6 +67,7 @@ impl Stage {
     fn begin(&self, key: u64, has_sound: bool) {
         self.send(Command::Begin(Begin {
             key,
+            client: key / 10,
             id: format!("u{key}"),
             has_sound,
             answers: self.answers.0.clone(),
@@ -245,9 +249,139 @@ fn one_that_gets_nothing_more_is_ended_with_an_error() {
 }
 
 #[test]
+fn one_that_never_begins_is_ended_too_and_makes_room() {
+    let mut stage = stage();
+    stage.begin(1, true);
+    stage.send(Command::Segments(1, labels(0, 400)));
+    stage.pass_ms(29_000);
+    assert!(stage.told().is_empty(), "its sound may still come");
+    stage.pass_ms(2_000);
+    assert_eq!(stage.told(), ["error u1 Busy"]);
+}
+
+/// Keys from 10 on are another client's.
+#[test]
+fn clients_take_turns_as_the_rules_say() {
+    let speak = |stage: &mut Stage, key| {
+        stage.begin(key, false);
+        stage.send(Command::Segments(key, labels(0, 1000)));
+        stage.send(Command::End(key));
+        stage.pass_ms(200);
+    };
+    let mut stage = stage_with(|rules| rules.turns = Turns::Refuse);
+    for key in [1, 10, 2] {
+        speak(&mut stage, key);
+    }
+    assert_eq!(stage.told(), ["started u1", "error u10 Busy"]);
+    stage.pass_ms(2500);
+    speak(&mut stage, 10);
+    assert_eq!(
+        stage.told(),
+        [
+            "finished u1 1.00 -0.00",
+            "started u2",
+            "finished u2 1.00 -0.00",
+            "started u10"
+        ]
+    );
+
+    let mut stage = stage_with(|rules| rules.turns = Turns::Replace);
+    for key in [1, 2, 10] {
+        speak(&mut stage, key);
+    }
+    assert_eq!(
+        stage.told(),
+        [
+            "started u1",
+            "stopped u1 0.4",
+            "stopped u2 0.0",
+            "started u10"
+        ]
+    );
+}
+
+#[test]
+fn sound_that_waits_is_bounded_for_each_client_and_for_all() {
+    let mut stage = stage_with(|rules| {
+        rules.client_ticks_max = 48_000;
+        rules.sound_ticks_max = 72_000;
+    });
+    for key in [1, 2, 10, 11, 20] {
+        stage.begin(key, true);
+    }
+    for (key, ticks) in [(1, 40_000), (2, 9_000), (10, 30_000), (20, 3_000)] {
+        stage.send(Command::Sound(key, vec![0.1; ticks]));
+    }
+    stage.pass_ms(20);
+    assert_eq!(stage.told(), ["error u2 Busy", "error u20 Busy"]);
+}
+
+#[test]
+fn barge_in_is_cued_and_told_within_a_turn() {
+    let mut stage = stage();
+    stage.begin(1, true);
+    stage.send(Command::Segments(1, labels(0, 5000)));
+    stage.send(Command::Sound(1, vec![0.1; 48 * 5000]));
+    stage.pass_ms(1000);
+    stage.send(Command::Stop(None));
+    stage.pass_ms(10);
+    let start = stage.conductor.ends.cues.len();
+    assert_eq!(start, 2);
+    let cues: Vec<Cue> = stage.cues.try_iter().collect();
+    let [Cue::Start { start, .. }, Cue::Stop { at, .. }] = cues[..] else {
+        panic!("{cues:?}");
+    };
+    let heard = stage.conductor.output.audible(stage.now_ns);
+    // Of what is heard, all after the turn is silent.
+    assert!(
+        at > start && heard - at <= 480,
+        "{at} when {heard} is heard"
+    );
+}
+
+#[test]
+fn captions_come_with_their_sound_and_go_with_their_utterance() {
+    let mut stage = stage();
+    let captions = Arc::clone(&stage.conductor.ends.captions);
+    let mut seen = 0;
+    let mut shown = || captions.latest(&mut seen).map(|t| t.to_string());
+    stage.begin(1, false);
+    stage.send(Command::Caption(Some(1), 0, "one".into()));
+    stage.send(Command::Caption(Some(1), 24_000, "two".into()));
+    stage.pass_ms(100);
+    assert_eq!(shown(), None, "nothing is heard yet");
+    stage.send(Command::Segments(1, labels(0, 1000)));
+    stage.send(Command::End(1));
+    stage.pass_ms(300);
+    assert_eq!(shown().as_deref(), Some("one"));
+    stage.pass_ms(500);
+    assert_eq!(shown().as_deref(), Some("two"));
+    stage.pass_ms(500);
+    assert_eq!(shown().as_deref(), Some(""));
+    stage.send(Command::Caption(None, 0, "alone".into()));
+    stage.pass_ms(500);
+    assert_eq!(shown().as_deref(), Some("alone"));
+}
+
+#[test]
+fn a_flood_of_faces_is_one_cue_a_turn() {
+    let mut stage = stage();
+    for n in 0..COMMANDS_MAX as i64 {
+        let at = None;
+        stage.send(Command::Show(Showing::Look { at, fade: n }));
+    }
+    stage.pass_ms(10);
+    let cues: Vec<Cue> = stage.cues.try_iter().collect();
+    assert!(
+        matches!(cues[..], [Cue::Show(Showing::Look { fade: 63, .. })]),
+        "{cues:?}"
+    );
+}
+
+#[test]
 fn the_queue_is_bounded() {
     let mut stage = stage();
-    for key in 0..=UTTERANCES_MAX as u64 {
+    for key in 0..=64 {
         stage.begin(key, false);
         stage.pass_ms(10);
     }
