@@ -88,6 +88,7 @@ look_for_test() {
     has_alsa_pulse || missing libasound2-plugins "leads ALSA's sound to PulseAudio"
     has ffmpeg || missing ffmpeg "a second opinion on the videos that are written"
     has python3 || missing python3 "runs the live test"
+    has socat || missing socat "runs the example client in shell"
     has flite || missing flite "a voice, so that speaking a text is tested"
     has espeak-ng || missing espeak-ng "another voice"
 }

@@ -141,10 +141,10 @@ impl From<TissueArg> for TissueModel {
 /// What is to be said.
 #[derive(Clone, Debug, Args)]
 pub struct InputArgs {
-    /// Phoneme labels (TIMIT: `start end phone` a line), `-` for standard input
+    /// Phoneme labels (TIMIT: `start end phone` a line), `-` for standard input, `fd:3` for an open descriptor
     #[arg(long, value_name = "F", required_unless_present_any = ["demo", "text"])]
     pub labels: Option<PathBuf>,
-    /// The sound that belongs to the labels: a WAV or NIST SPHERE file
+    /// The sound that belongs to the labels: a WAV or NIST SPHERE file, `-` and `fd:3` as above
     #[arg(long, value_name = "F")]
     pub audio: Option<PathBuf>,
     /// The sentence that comes with the program, instead of files

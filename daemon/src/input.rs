@@ -1,7 +1,7 @@
 //! What is to be said, from files or from the built-in demo: labels, sound and how long both last.
 
 use std::io;
-use std::path::Path;
+use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
 use anyhow::bail;
@@ -39,23 +39,18 @@ pub struct Utterance {
 impl Utterance {
     /// Reads what `args` name, and says on stderr what is odd about it.
     pub fn load(args: &InputArgs) -> anyhow::Result<Self> {
-        let rate = SampleRate::new(args.label_rate)?;
         if let Some(text) = &args.text.text {
             return Self::of_text(text, args);
         }
+        one_use(args)?;
         let (name, labels, sound) = match &args.labels {
             Some(path) => {
-                let options = read_options(
-                    rate,
-                    args.alphabet,
-                    args.label_tier.as_deref(),
-                    args.dictionary.as_deref(),
-                )?;
+                let options = options(args)?;
                 let mut labels = read_labels(path, args.from.as_deref(), &options)?;
                 if let (true, Some(own)) = (labels.segments.is_empty(), &options.pronouncer) {
                     labels.segments = own.spread(&labels.words);
                 }
-                let sound = args.audio.as_deref().map(wav::read).transpose()?;
+                let sound = args.audio.as_deref().map(read_sound).transpose()?;
                 (path.display().to_string(), labels, sound)
             }
             None => {
@@ -78,7 +73,7 @@ impl Utterance {
         let spoken = match (words.tts, &args.audio) {
             (Some(engine), _) => engine.speak(&voices::text(text)?, words.voice.as_deref())?,
             (None, Some(path)) => {
-                let sound = wav::read(path)?;
+                let sound = read_sound(path)?;
                 voices::align(&voices::text(text)?, sound, &path.display().to_string())?
             }
             (None, None) => {
@@ -161,7 +156,47 @@ pub fn read_options(
     Ok(options)
 }
 
-/// Reads a label file, `-` for standard input.
+/// What `args` say of their labels.
+pub fn options(args: &InputArgs) -> anyhow::Result<ReadOptions> {
+    read_options(
+        SampleRate::new(args.label_rate)?,
+        args.alphabet,
+        args.label_tier.as_deref(),
+        args.dictionary.as_deref(),
+    )
+}
+
+/// Labels and sound cannot both be read from one pipe.
+pub fn one_use(args: &InputArgs) -> Result<(), Usage> {
+    let pipes = [&args.labels, &args.audio].map(|p| p.as_deref().and_then(pipe));
+    match pipes {
+        [Some(labels), Some(sound)] if labels == sound => Err(Usage(
+            "--labels and --audio name the same pipe; give one of them a descriptor of its own:              --labels fd:3 3<LABELS"
+                .into(),
+        )),
+        _ => Ok(()),
+    }
+}
+
+/// What `-` and `fd:3` stand for: standard input, and an open descriptor of this process. None for a file.
+pub fn pipe(path: &Path) -> Option<PathBuf> {
+    if path == Path::new("-") {
+        return Some(PathBuf::from("/dev/stdin"));
+    }
+    let number = path.to_str()?.strip_prefix("fd:")?;
+    let number: u16 = number.parse().ok()?;
+    Some(PathBuf::from(format!("/dev/fd/{number}")))
+}
+
+/// Reads a sound file; `-` and `fd:3` as [`pipe`] has them.
+pub fn read_sound(path: &Path) -> Result<wav::Sound, wav::SoundError> {
+    match pipe(path) {
+        Some(pipe) => wav::read(&pipe),
+        None => wav::read(path),
+    }
+}
+
+/// Reads a label file, `-` for standard input, `fd:3` for an open descriptor.
 pub fn read_labels(
     path: &Path,
     from: Option<&str>,
@@ -171,7 +206,8 @@ pub fn read_labels(
     let labels = if path == Path::new("-") {
         mouthpiece_phonemes::read_from("<stdin>", io::stdin().lock(), from, options)
     } else {
-        mouthpiece_phonemes::read_file(path, from, options)
+        let file = pipe(path);
+        mouthpiece_phonemes::read_file(file.as_deref().unwrap_or(path), from, options)
     };
     Ok(labels?)
 }

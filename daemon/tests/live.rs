@@ -6,132 +6,16 @@
     reason = "a test says what it expects, in short lines"
 )]
 
-use std::io::{BufRead as _, BufReader, Read as _, Write as _};
+mod harness;
+
+use std::io::{Read as _, Write as _};
 use std::os::unix::fs::{FileTypeExt as _, PermissionsExt as _};
 use std::os::unix::net::{UnixListener, UnixStream};
-use std::path::{Path, PathBuf};
-use std::process::{Child, Command, Output, Stdio};
-use std::time::{Duration, Instant};
+use std::process::Stdio;
+use std::time::Duration;
 
-use serde_json::{Value, json};
-
-/// Far longer than anything here takes on a busy machine.
-const PATIENCE: Duration = Duration::from_secs(60);
-
-fn mouthpiece() -> Command {
-    let mut command = Command::new(env!("CARGO_BIN_EXE_mouthpiece"));
-    command
-        .env_remove("DISPLAY")
-        .env_remove("WAYLAND_DISPLAY")
-        .env_remove("WAYLAND_SOCKET")
-        // No configuration of the user's.
-        .env("XDG_CONFIG_HOME", "/nowhere")
-        .stdin(Stdio::null());
-    command
-}
-
-fn text(output: &Output) -> String {
-    String::from_utf8_lossy(&output.stderr).into_owned()
-}
-
-/// A running daemon; ended with the test whatever happens.
-struct Daemon {
-    child: Child,
-    socket: PathBuf,
-}
-
-impl Daemon {
-    fn start(socket: &Path) -> Self {
-        let child = mouthpiece()
-            .args(["run", "--audio-device", "none", "--listen"])
-            .arg(socket)
-            .stderr(Stdio::null())
-            .spawn()
-            .unwrap();
-        let daemon = Self {
-            child,
-            socket: socket.to_owned(),
-        };
-        let until = Instant::now() + PATIENCE;
-        while UnixStream::connect(socket).is_err() {
-            assert!(Instant::now() < until, "the daemon does not listen");
-            std::thread::sleep(Duration::from_millis(20));
-        }
-        daemon
-    }
-
-    fn call(&self) -> Client {
-        let stream = UnixStream::connect(&self.socket).unwrap();
-        stream.set_read_timeout(Some(PATIENCE)).unwrap();
-        Client {
-            lines: BufReader::new(stream.try_clone().unwrap()),
-            stream,
-        }
-    }
-
-    fn signal(&self, name: &str) {
-        let id = self.child.id().to_string();
-        assert!(
-            Command::new("kill")
-                .args([name, &id])
-                .status()
-                .unwrap()
-                .success()
-        );
-    }
-}
-
-impl Drop for Daemon {
-    fn drop(&mut self) {
-        let _ = self.child.kill();
-        let _ = self.child.wait();
-    }
-}
-
-struct Client {
-    stream: UnixStream,
-    lines: BufReader<UnixStream>,
-}
-
-impl Client {
-    fn say(&mut self, line: impl ToString) {
-        writeln!(self.stream, "{}", line.to_string()).unwrap();
-    }
-
-    /// The next answer that is not about progress.
-    fn answer(&mut self) -> Value {
-        loop {
-            let mut line = String::new();
-            assert!(self.lines.read_line(&mut line).unwrap() > 0, "closed");
-            let answer: Value = serde_json::from_str(&line).unwrap();
-            if answer["type"] != "progress" {
-                return answer;
-            }
-        }
-    }
-
-    fn expect(&mut self, kind: &str, id: &str) -> Value {
-        let answer = self.answer();
-        assert_eq!(
-            (answer["type"].as_str(), answer["id"].as_str()),
-            (Some(kind), Some(id)),
-            "{answer}"
-        );
-        answer
-    }
-}
-
-fn begin(id: &str) -> Value {
-    json!({"type": "begin", "id": id})
-}
-
-fn vowel(seconds: f64) -> Value {
-    json!({"type": "phones", "phones": [{"start": 0, "end": seconds, "phone": "aa"}]})
-}
-
-fn end() -> Value {
-    json!({"type": "end"})
-}
+use harness::{Daemon, begin, end, mouthpiece, text, vowel};
+use serde_json::json;
 
 #[test]
 fn clients_speak_in_turn_stop_fail_and_die_and_the_daemon_goes_on() {
@@ -239,7 +123,7 @@ fn one_daemon_at_a_socket_and_it_leaves_nothing_behind() {
     assert!(std::fs::metadata(&socket).unwrap().file_type().is_socket());
 
     let second = mouthpiece()
-        .args(["run", "--listen"])
+        .args(["run", "--http", "none", "--listen"])
         .arg(&socket)
         .output()
         .unwrap();
@@ -258,7 +142,7 @@ fn one_daemon_at_a_socket_and_it_leaves_nothing_behind() {
     // What is no socket is not touched.
     std::fs::write(&socket, "mine").unwrap();
     let refused = mouthpiece()
-        .args(["run", "--listen"])
+        .args(["run", "--http", "none", "--listen"])
         .arg(&socket)
         .output()
         .unwrap();

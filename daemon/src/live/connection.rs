@@ -280,15 +280,10 @@ impl Client {
         );
         let read = tokio::task::spawn_blocking(move || {
             let file = files.open(&path)?;
-            let bytes = files::read(file, files::bytes_max(seconds))?;
             let name = path.display().to_string();
-            let sound = wav::decode(&bytes[..], &name).map_err(|error| error.to_string())?;
-            if sound.frames.len() as u64 > u64::from(seconds) * u64::from(RATE_HZ) {
-                return Err(format!(
-                    "{name} is longer than the {seconds} s of an utterance"
-                ));
-            }
-            Ok(sound)
+            let file = std::io::BufReader::new(file);
+            let sound = wav::decode_at_most(file, &name, seconds as usize);
+            sound.map_err(|error| error.to_string())
         });
         match read.await {
             Ok(Ok(sound)) => {
@@ -399,3 +394,6 @@ fn slowness(limits: &Limits) -> DaemonMessage {
     );
     refusal(ErrorCode::Limit, message)
 }
+
+#[cfg(test)]
+mod tests;

@@ -139,12 +139,7 @@ impl Player {
         })?;
 
         let player = Self {
-            handle: Handle {
-                commands,
-                keys: Arc::default(),
-                vitals: Arc::clone(&vitals),
-                closing: CancellationToken::new(),
-            },
+            handle: Handle::new(commands, Arc::clone(&vitals)),
             threads: vec![sound, simulation],
             puppeteer,
             has_sound: has_sound.recv().unwrap_or(false),
@@ -189,6 +184,16 @@ impl Player {
 }
 
 impl Handle {
+    /// One that leads to whoever takes `commands`.
+    pub fn new(commands: mpsc::Sender<Command>, vitals: Arc<Vitals>) -> Self {
+        Self {
+            commands,
+            keys: Arc::default(),
+            vitals,
+            closing: CancellationToken::new(),
+        }
+    }
+
     /// A number that no other utterance has.
     pub fn new_key(&self) -> u64 {
         self.keys.fetch_add(1, Ordering::Relaxed)

@@ -1,5 +1,7 @@
-//! What `say` says, in pieces as they come: from files at once, labels on standard input line by line.
+//! What `say` says, in pieces as they come: from files at once, from pipes (`-`, `fd:3`) labels line by line and
+//! sound block by block.
 
+use std::fs::File;
 use std::io::Read as _;
 use std::path::Path;
 
@@ -9,16 +11,21 @@ use mouthpiece_phonemes::timit::TimitStream;
 use mouthpiece_phonemes::{Alphabet, LineError, SampleRate, Segment};
 use tokio::sync::mpsc;
 
+use super::sound::resample::Resample;
 use crate::cli::InputArgs;
-use crate::input::{AUTO, Utterance};
+use crate::input::{self, AUTO, Utterance};
 use crate::media::wav;
 
 /// Pieces that wait: a few seconds of sound.
 const PIECES_MAX: usize = 16;
 /// Samples in a piece of sound: half a second, well below the longest line of the wire.
 const PIECE_SAMPLES: usize = 24_000;
-/// Bytes read from standard input at once.
+/// Bytes of labels read at once.
 const READ_BYTES: usize = 4096;
+/// Bytes of sound read at once from a pipe: 43 ms at 48 kHz and 16 bits, so that little waits to be whole.
+const PIPE_BYTES: usize = 4096;
+/// The rate of everything that is spoken.
+const RATE_HZ: u32 = 48_000;
 
 /// A piece of an utterance.
 #[derive(Debug)]
@@ -38,14 +45,38 @@ pub struct Source {
 impl Source {
     /// Opens what `args` name. Files are read and checked before this returns.
     pub fn open(args: &InputArgs) -> Result<Self> {
-        let streamed = Streamed::of(args)?;
-        if let Some(streamed) = streamed.filter(|_| args.labels.as_deref() == Some(Path::new("-")))
-        {
-            let sound = args.audio.as_deref().map(wav::read).transpose()?;
-            return Self::start(sound.map(|s| s.frames), move |send| {
-                stdin_labels(streamed, send);
-            });
+        input::one_use(args)?;
+        let Some(path) = &args.labels else {
+            return Self::whole(args);
+        };
+        let (labels, sound) = (input::pipe(path), args.audio.as_deref());
+        let sound_pipe = sound.and_then(input::pipe);
+        if labels.is_none() && sound_pipe.is_none() {
+            return Self::whole(args);
         }
+        let streamed = Streamed::of(args)?.filter(|_| labels.is_some());
+        let labels = match (labels, streamed) {
+            (Some(pipe), Some(streamed)) => {
+                let file = File::open(&pipe)
+                    .with_context(|| format!("{} cannot be read", path.display()))?;
+                Labels::Coming(file, streamed)
+            }
+            // A format that must be there to its end.
+            _ => {
+                let options = input::options(args)?;
+                Labels::There(input::read_labels(path, args.from.as_deref(), &options)?.segments)
+            }
+        };
+        let sound = match (sound, sound_pipe) {
+            (Some(path), Some(pipe)) => Some(coming_sound(path, &pipe)?),
+            (Some(path), None) => Some(SoundFrom::Frames(wav::read(path)?.frames)),
+            (None, _) => None,
+        };
+        Self::start(sound, labels)
+    }
+
+    /// What is read and checked at once.
+    fn whole(args: &InputArgs) -> Result<Self> {
         let Utterance {
             segments, sound, ..
         } = Utterance::load(args)?;
@@ -54,35 +85,86 @@ impl Source {
 
     /// An utterance that is there already.
     pub fn of(segments: Vec<Segment>, sound: Option<Vec<f32>>) -> Result<Self> {
-        Self::start(sound, move |send| {
-            // Nobody left to say it: nothing to do.
-            let _ = send.blocking_send(Piece::Segments(segments));
-        })
+        Self::start(sound.map(SoundFrom::Frames), Labels::There(segments))
     }
 
-    /// Sends sound and what `labels` sends, each from a thread of its own: labels must not wait
-    /// until a long sound has been taken.
-    fn start(
-        sound: Option<Vec<f32>>,
-        labels: impl FnOnce(&mpsc::Sender<Piece>) + Send + 'static,
-    ) -> Result<Self> {
+    /// Sends sound and labels, each from a thread of its own: labels must not wait until a long sound
+    /// has been taken.
+    fn start(sound: Option<SoundFrom>, labels: Labels) -> Result<Self> {
         let (send, pieces) = mpsc::channel(PIECES_MAX);
         let has_sound = sound.is_some();
         let sound_send = send.clone();
-        spawn("labels", move || labels(&send))?;
+        spawn("labels", move || match labels {
+            Labels::There(segments) => {
+                // Nobody left to say it: nothing to do.
+                let _ = send.blocking_send(Piece::Segments(segments));
+            }
+            Labels::Coming(file, streamed) => labels_from(file, streamed, &send),
+        })?;
         if let Some(sound) = sound {
-            spawn("audio", move || {
-                for piece in sound.chunks(PIECE_SAMPLES) {
-                    if sound_send
-                        .blocking_send(Piece::Sound(piece.to_vec()))
-                        .is_err()
-                    {
-                        return;
+            spawn("audio", move || match sound {
+                SoundFrom::Frames(frames) => {
+                    for piece in frames.chunks(PIECE_SAMPLES) {
+                        let piece = Piece::Sound(piece.to_vec());
+                        if sound_send.blocking_send(piece).is_err() {
+                            return;
+                        }
                     }
                 }
+                SoundFrom::Pipe(stream, resample) => sound_from(stream, resample, &sound_send),
             })?;
         }
         Ok(Self { has_sound, pieces })
+    }
+}
+
+/// Labels that are there already, or come through a pipe.
+enum Labels {
+    There(Vec<Segment>),
+    Coming(File, Streamed),
+}
+
+/// The same of sound.
+enum SoundFrom {
+    Frames(Vec<f32>),
+    Pipe(wav::Stream<'static>, Box<Resample>),
+}
+
+/// Opens sound that comes through `pipe`, and waits for its header.
+fn coming_sound(path: &Path, pipe: &Path) -> Result<SoundFrom> {
+    let name = path.display().to_string();
+    let file = File::open(pipe).with_context(|| format!("{name} cannot be read"))?;
+    let stream = wav::Stream::open(file, &name, PIPE_BYTES)?;
+    let resample = Resample::new(stream.rate(), RATE_HZ)?;
+    Ok(SoundFrom::Pipe(stream, Box::new(resample)))
+}
+
+/// Sends sound as it comes, until it is over or nobody wants it.
+fn sound_from(
+    mut stream: wav::Stream<'_>,
+    mut resample: Box<Resample>,
+    send: &mpsc::Sender<Piece>,
+) {
+    let mut mono = Vec::new();
+    loop {
+        let mut ticks = Vec::new();
+        let over = match stream.read(&mut mono) {
+            Ok(true) => resample.push(&mono, &mut ticks).is_err(),
+            Ok(false) => true,
+            Err(error) => {
+                tracing::warn!("{error}; what came before is spoken");
+                true
+            }
+        };
+        if over && let Err(error) = resample.finish(&mut ticks) {
+            tracing::warn!("the end of the sound is lost: {error:#}");
+        }
+        if !ticks.is_empty() && send.blocking_send(Piece::Sound(ticks)).is_err() {
+            return;
+        }
+        if over {
+            return;
+        }
     }
 }
 
@@ -130,15 +212,14 @@ impl Streamed {
     }
 }
 
-/// Reads labels from standard input as they come; a line that cannot be used is named and left out.
-fn stdin_labels(mut stream: Streamed, send: &mpsc::Sender<Piece>) {
+/// Sends labels as they come; a line that cannot be used is named and left out.
+fn labels_from(mut input: File, mut stream: Streamed, send: &mpsc::Sender<Piece>) {
     let mut bytes = [0; READ_BYTES];
-    let mut input = std::io::stdin().lock();
     loop {
         let mut segments = Vec::new();
         let mut each = |line: Result<Segment, LineError>| match line {
             Ok(segment) => segments.push(segment),
-            Err(error) => tracing::warn!("<stdin>: {error}; the line is left out"),
+            Err(error) => tracing::warn!("the labels: {error}; the line is left out"),
         };
         let over = match input.read(&mut bytes) {
             Ok(0) => {
@@ -151,7 +232,7 @@ fn stdin_labels(mut stream: Streamed, send: &mpsc::Sender<Piece>) {
             }
             Err(error) if error.kind() == std::io::ErrorKind::Interrupted => false,
             Err(error) => {
-                tracing::warn!("<stdin> cannot be read any more: {error}");
+                tracing::warn!("the labels cannot be read any more: {error}");
                 true
             }
         };

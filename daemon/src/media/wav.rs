@@ -53,8 +53,8 @@ pub enum SoundError {
     Broken { name: String, why: String },
     #[error("{name} holds no sound (0 samples); leave the sound out to speak in silence")]
     Empty { name: String },
-    #[error("{name} is longer than {} minutes; cut it into parts", SECONDS_MAX / 60)]
-    TooLong { name: String },
+    #[error("{name} is longer than {seconds_max} seconds; cut it into parts")]
+    TooLong { name: String, seconds_max: usize },
 }
 
 /// What stands before the sound.
@@ -80,73 +80,29 @@ pub fn read(path: &Path) -> Result<Sound, SoundError> {
 }
 
 /// Reads sound from `input`, which errors call `name`.
-pub fn decode(mut input: impl Read, name: &str) -> Result<Sound, SoundError> {
-    let own = || name.to_string();
-    let broken = |why: String| SoundError::Broken { name: own(), why };
-    let io = |source| SoundError::Io {
-        name: own(),
-        source,
-    };
-
-    let mut magic = [0; 4];
-    let taken = fill(&mut input, &mut magic).map_err(io)?;
-    let header = match &magic {
-        b"RIFF" | b"RF64" | b"BW64" => riff::header(magic, &mut input).map_err(broken)?,
-        b"NIST" => sphere::header(&mut input).map_err(broken)?,
-        _ => {
-            let what = kind(&magic[..taken]);
-            return Err(SoundError::NotWav { name: own(), what });
-        }
-    };
-    if !RATES.contains(&header.rate) {
-        return Err(broken(format!("its rate of {} Hz is absurd", header.rate)));
-    }
-    if header.channels > CHANNELS_MAX {
-        return Err(broken(format!(
-            "its {} channels are absurd",
-            header.channels
-        )));
-    }
-
-    if header.shortened {
-        let unpacked = shorten::unpack(&mut input, header.channels).map_err(broken)?;
-        return gather(&header, &mut &unpacked[..], name);
-    }
-    gather(&header, &mut input, name)
+pub fn decode(input: impl Read, name: &str) -> Result<Sound, SoundError> {
+    decode_at_most(input, name, SECONDS_MAX)
 }
 
-/// Brings the sound that is in `input` to 48 kHz.
-fn gather(header: &Header, input: &mut impl Read, name: &str) -> Result<Sound, SoundError> {
+/// The same of at most `seconds_max`.
+pub fn decode_at_most(
+    input: impl Read,
+    name: &str,
+    seconds_max: usize,
+) -> Result<Sound, SoundError> {
     let own = || name.to_string();
     let broken = |why: String| SoundError::Broken { name: own(), why };
-    let io = |source| SoundError::Io {
-        name: own(),
-        source,
-    };
-    let frame_bytes = header.coding.width() * usize::from(header.channels);
-    let mut block = vec![0; (BLOCK_BYTES / frame_bytes).max(1) * frame_bytes];
+    let mut stream = Stream::open(input, name, BLOCK_BYTES)?;
+    let mut resampler = Resampler::new(stream.rate()).map_err(|e| broken(e.to_string()))?;
     let mut mono = Vec::new();
-    let mut resampler = Resampler::new(header.rate).map_err(|e| broken(e.to_string()))?;
-    let mut left = header.data_bytes.unwrap_or(u64::MAX);
-    while left > 0 {
-        let want = usize::try_from(left).map_or(block.len(), |left| left.min(block.len()));
-        let got = fill(input, &mut block[..want]).map_err(io)?;
-        left -= got as u64;
-        mono.clear();
-        header
-            .coding
-            .mix(&block[..got], usize::from(header.channels), &mut mono);
+    while stream.read(&mut mono)? {
         resampler.push(&mono).map_err(|e| broken(e.to_string()))?;
-        if resampler.len() > SECONDS_MAX * 48_000 {
-            return Err(SoundError::TooLong { name: own() });
+        if resampler.len() > seconds_max * 48_000 {
+            return Err(SoundError::TooLong {
+                name: own(),
+                seconds_max,
+            });
         }
-        if got < want {
-            break;
-        }
-    }
-    // 0x7FFF0000 and above is what programs write that do not know the length.
-    if left > 0 && header.data_bytes.is_some_and(|bytes| bytes < 0x7FFF_0000) {
-        tracing::warn!("{name} is cut short: its header promises {left} bytes more");
     }
     let mut frames = resampler.finish().map_err(|e| broken(e.to_string()))?;
     if frames.is_empty() {
@@ -155,6 +111,96 @@ fn gather(header: &Header, input: &mut impl Read, name: &str) -> Result<Sound, S
     // The filter may overshoot.
     frames.iter_mut().for_each(|x| *x = x.clamp(-1.0, 1.0));
     Ok(Sound { frames })
+}
+
+/// Sound that is taken as it comes: mono, at its own rate.
+pub struct Stream<'a> {
+    name: String,
+    input: Box<dyn Read + 'a>,
+    header: Header,
+    /// Of sound that is still promised, bytes.
+    left: u64,
+    block: Vec<u8>,
+}
+
+impl<'a> Stream<'a> {
+    /// Reads what stands before the sound. Of the sound as much is taken at once as fits into `block_bytes`.
+    pub fn open(
+        mut input: impl Read + 'a,
+        name: &str,
+        block_bytes: usize,
+    ) -> Result<Self, SoundError> {
+        let own = || name.to_string();
+        let broken = |why: String| SoundError::Broken { name: own(), why };
+        let mut magic = [0; 4];
+        let taken = fill(&mut input, &mut magic).map_err(|source| SoundError::Io {
+            name: own(),
+            source,
+        })?;
+        let header = match &magic {
+            b"RIFF" | b"RF64" | b"BW64" => riff::header(magic, &mut input).map_err(broken)?,
+            b"NIST" => sphere::header(&mut input).map_err(broken)?,
+            _ => {
+                let what = kind(&magic[..taken]);
+                return Err(SoundError::NotWav { name: own(), what });
+            }
+        };
+        if !RATES.contains(&header.rate) {
+            return Err(broken(format!("its rate of {} Hz is absurd", header.rate)));
+        }
+        if header.channels > CHANNELS_MAX {
+            let why = format!("its {} channels are absurd", header.channels);
+            return Err(broken(why));
+        }
+        let frame_bytes = header.coding.width() * usize::from(header.channels);
+        let input: Box<dyn Read + 'a> = if header.shortened {
+            let unpacked = shorten::unpack(&mut input, header.channels).map_err(broken)?;
+            Box::new(io::Cursor::new(unpacked))
+        } else {
+            Box::new(input)
+        };
+        Ok(Self {
+            name: own(),
+            input,
+            left: header.data_bytes.unwrap_or(u64::MAX),
+            header,
+            block: vec![0; (block_bytes / frame_bytes).max(1) * frame_bytes],
+        })
+    }
+
+    /// Samples a second.
+    pub fn rate(&self) -> u32 {
+        self.header.rate
+    }
+
+    /// Puts the next samples into `mono`, in place of what is there; false when there are no more.
+    pub fn read(&mut self, mono: &mut Vec<f32>) -> Result<bool, SoundError> {
+        mono.clear();
+        if self.left == 0 {
+            return Ok(false);
+        }
+        let whole = self.block.len();
+        let want = usize::try_from(self.left).map_or(whole, |left| left.min(whole));
+        let block = &mut self.block[..want];
+        let got = fill(&mut self.input, block).map_err(|source| SoundError::Io {
+            name: self.name.clone(),
+            source,
+        })?;
+        self.left -= got as u64;
+        let Header {
+            coding, channels, ..
+        } = self.header;
+        coding.mix(&block[..got], usize::from(channels), mono);
+        if got < want {
+            let (name, left) = (&self.name, self.left);
+            // 0x7FFF0000 and above is what programs write that do not know the length.
+            if self.header.data_bytes.is_some_and(|b| b < 0x7FFF_0000) {
+                tracing::warn!("{name} is cut short: its header promises {left} bytes more");
+            }
+            self.left = 0;
+        }
+        Ok(true)
+    }
 }
 
 /// What a file is that is not WAV, by its first bytes.

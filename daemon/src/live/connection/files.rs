@@ -4,7 +4,6 @@
 //! these files anyway. Whoever else may come in (a group, TCP, a WebSocket) has to be given a folder.
 
 use std::fs::File;
-use std::io::Read as _;
 use std::path::{Path, PathBuf};
 
 use anyhow::{Context as _, Result};
@@ -46,23 +45,6 @@ impl Files {
     }
 }
 
-/// Longest file for `seconds` of sound: as much of the widest kind that is read, and its header.
-pub fn bytes_max(seconds: u32) -> u64 {
-    const BYTES_PER_SECOND: u64 = 192_000 * 8 * 2;
-    u64::from(seconds) * BYTES_PER_SECOND + 65_536
-}
-
-/// At most `bytes` of a file, all in memory; an error when it is longer.
-pub fn read(file: File, bytes: u64) -> Result<Vec<u8>, String> {
-    let mut read = Vec::new();
-    let taken = file.take(bytes + 1).read_to_end(&mut read);
-    taken.map_err(|error| format!("the file cannot be read: {error}"))?;
-    if read.len() as u64 > bytes {
-        return Err("the file is longer than an utterance may be".to_owned());
-    }
-    Ok(read)
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -93,10 +75,8 @@ mod tests {
     }
 
     #[test]
-    fn a_file_that_never_ends_is_refused() {
-        let file = File::open("/dev/zero").unwrap();
-        assert!(read(file, 1000).is_err());
+    fn what_is_no_regular_file_is_refused() {
         let any = Files::below(Path::new("/")).unwrap();
-        assert!(any.open(Path::new("/dev/zero")).is_err(), "no regular file");
+        assert!(any.open(Path::new("/dev/zero")).is_err());
     }
 }
