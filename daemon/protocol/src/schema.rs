@@ -4,7 +4,7 @@ use schemars::{JsonSchema, Schema, SchemaGenerator, generate::SchemaSettings};
 
 use crate::{ClientMessage, DaemonMessage};
 
-/// Either way.
+/// A line of the wire, either way.
 #[derive(JsonSchema)]
 #[schemars(untagged, rename = "Mouthpiece")]
 #[allow(dead_code, reason = "only its schema is of use")]

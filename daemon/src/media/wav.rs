@@ -80,13 +80,13 @@ pub fn read(path: &Path) -> Result<Sound, SoundError> {
 }
 
 /// Reads sound from `input`, which errors call `name`.
-pub fn decode(input: impl Read, name: &str) -> Result<Sound, SoundError> {
+pub fn decode(input: impl Read + Send, name: &str) -> Result<Sound, SoundError> {
     decode_at_most(input, name, SECONDS_MAX)
 }
 
 /// The same of at most `seconds_max`.
 pub fn decode_at_most(
-    input: impl Read,
+    input: impl Read + Send,
     name: &str,
     seconds_max: usize,
 ) -> Result<Sound, SoundError> {
@@ -116,7 +116,7 @@ pub fn decode_at_most(
 /// Sound that is taken as it comes: mono, at its own rate.
 pub struct Stream<'a> {
     name: String,
-    input: Box<dyn Read + 'a>,
+    input: Box<dyn Read + Send + 'a>,
     header: Header,
     /// Of sound that is still promised, bytes.
     left: u64,
@@ -126,7 +126,7 @@ pub struct Stream<'a> {
 impl<'a> Stream<'a> {
     /// Reads what stands before the sound. Of the sound as much is taken at once as fits into `block_bytes`.
     pub fn open(
-        mut input: impl Read + 'a,
+        mut input: impl Read + Send + 'a,
         name: &str,
         block_bytes: usize,
     ) -> Result<Self, SoundError> {
@@ -153,7 +153,7 @@ impl<'a> Stream<'a> {
             return Err(broken(why));
         }
         let frame_bytes = header.coding.width() * usize::from(header.channels);
-        let input: Box<dyn Read + 'a> = if header.shortened {
+        let input: Box<dyn Read + Send + 'a> = if header.shortened {
             let unpacked = shorten::unpack(&mut input, header.channels).map_err(broken)?;
             Box::new(io::Cursor::new(unpacked))
         } else {

@@ -1,6 +1,15 @@
 //! A running daemon without window and sound device, and clients of it, for the tests beside this folder.
 
-#![allow(dead_code, reason = "each test program uses what it needs of it")]
+#![allow(
+    dead_code,
+    unreachable_pub,
+    clippy::unwrap_used,
+    clippy::expect_used,
+    clippy::needless_pass_by_value,
+    clippy::should_implement_trait,
+    missing_docs,
+    reason = "a part of each test program beside it, each of which uses what it needs"
+)]
 
 use std::io::{BufRead as _, BufReader, Read, Write};
 use std::net::{TcpListener, TcpStream};
