@@ -83,7 +83,7 @@ fn wanted_log(cli: &Cli) -> log::Wanted {
     };
     // What is wrong with the configuration is said by the command itself, in the log that is set up here.
     let configured = stage.map(|stage| {
-        config::Source::new(stage, None)
+        config::Source::new(stage, &cli::WireArgs::default())
             .load()
             .unwrap_or_default()
             .log
