@@ -394,6 +394,3 @@ fn slowness(limits: &Limits) -> DaemonMessage {
     );
     refusal(ErrorCode::Limit, message)
 }
-
-#[cfg(test)]
-mod tests;
