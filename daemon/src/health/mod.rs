@@ -18,4 +18,5 @@ mod preview;
 mod server;
 mod status;
 
+pub use guard::Token;
 pub use server::{Door, Health};

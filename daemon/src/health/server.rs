@@ -91,7 +91,7 @@ impl Door {
             Guard::Token(token.ok_or_else(|| {
                 Usage(format!(
                     "{address} can be reached from other machines, and there is no token to let only yours in; \
-                     listen at 127.0.0.1:{port}, or give the wire a token"
+                     listen at 127.0.0.1:{port}, or give the wire a token (--token-file)"
                 ))
             })?)
         };

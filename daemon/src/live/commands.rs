@@ -27,7 +27,7 @@ use super::sync::{self, Flash, Onsets};
 use super::window::{Display, Look, Wake};
 use crate::cli::{CastArgs, RunArgs, SayArgs, StageArgs, WireArgs};
 use crate::config::{self, Config};
-use crate::health::Health;
+use crate::health::{Health, Token};
 use crate::interrupt::Interrupted;
 use crate::pipeline::Cast;
 
@@ -46,7 +46,11 @@ pub fn run(args: &RunArgs) -> Result<()> {
     let look = Look::load(&config)?;
     // First, so that a second daemon ends before it has cost anything.
     let server = net.block_on(Server::bind(&config.wire))?;
-    let door = net.block_on(config.health.http.open(None))?;
+    let secret = config.wire.token_file.as_deref().map(read_token_text);
+    let token = secret
+        .transpose()?
+        .map(|secret| Token::new(secret.as_bytes()));
+    let door = net.block_on(config.health.http.open(token))?;
     net.spawn(ended_in_time(stop.clone(), server.socket()));
     let cast = cast(&config)?;
     let onsets = args.test.then(Arc::<Onsets>::default);
