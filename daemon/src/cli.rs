@@ -423,8 +423,27 @@ pub struct BenchArgs {
 
 /// What this machine has (GPU, sound, display) and what to install
 #[derive(Debug, Args)]
-#[command(after_help = "Example:\n  mouthpiece doctor")]
-pub struct DoctorArgs {}
+#[command(after_help = "Examples:\n  mouthpiece doctor\n  mouthpiece doctor --sync")]
+pub struct DoctorArgs {
+    /// Play clicks with flashes instead, record what the sound server plays, and say by how much the
+    /// picture is later than the sound
+    #[arg(long)]
+    pub sync: bool,
+    /// How many of them, one a second
+    #[arg(long, value_name = "S", default_value_t = 15, requires = "sync",
+          value_parser = clap::value_parser!(u32).range(3..=120))]
+    pub seconds: u32,
+    /// As `run --audio-device`
+    #[arg(long, value_name = "ID", requires = "sync")]
+    pub audio_device: Option<String>,
+    /// As `run --av-offset`: the offset to be tried
+    #[arg(long, value_name = "MS", requires = "sync", allow_negative_numbers = true,
+          value_parser = clap::value_parser!(i16).range(-500..=500))]
+    pub av_offset: Option<i16>,
+    /// Size of the window in pixels
+    #[arg(long, value_name = "WxH", requires = "sync")]
+    pub size: Option<Size>,
+}
 
 /// Clicks with flashes, for recorders of sound and screen to compare (tests/live_sync.py)
 #[derive(Debug, Args)]

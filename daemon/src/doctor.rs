@@ -6,12 +6,27 @@ use std::process::{Command, Stdio};
 use cpal::traits::{DeviceTrait as _, HostTrait as _};
 use mouthpiece_render::Gpu;
 
+use crate::cli::{DoctorArgs, StageArgs};
 use crate::live;
 use crate::media::output;
 use crate::voices;
 
-/// Looks around. Only a missing graphics driver stops the product; all else has a way round.
-pub fn run() -> anyhow::Result<()> {
+/// Looks around, or judges sound against picture.
+pub fn run(args: &DoctorArgs) -> anyhow::Result<()> {
+    if !args.sync {
+        return look_around();
+    }
+    let stage = StageArgs {
+        audio_device: args.audio_device.clone(),
+        av_offset: args.av_offset,
+        size: args.size,
+        ..StageArgs::default()
+    };
+    output::print(&live::doctor_sync(&stage, args.seconds)?)
+}
+
+/// Only a missing graphics driver stops the product; all else has a way round.
+fn look_around() -> anyhow::Result<()> {
     let mut text = String::new();
     let can_draw = graphics(&mut text);
     sound(&mut text);

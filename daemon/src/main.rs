@@ -125,7 +125,7 @@ fn dispatch(command: &Command) -> anyhow::Result<()> {
         Command::Still(args) => still::run(args),
         Command::Head(command) => head::run(command),
         Command::Bench(args) => bench::run(args),
-        Command::Doctor(_) => doctor::run(),
+        Command::Doctor(args) => doctor::run(args),
         Command::Config(command) => config::run(command),
         Command::Run(args) => live::run(args),
         Command::Say(args) => live::say(args),

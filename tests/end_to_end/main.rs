@@ -14,6 +14,7 @@
 //! | `health` | what supervisors, Prometheus and browsers are told; faults that heal |
 //! | `labels` | label files of every sad kind, and the round trip |
 //! | `closures` | lips that close at every rate, over many sentences; look-ahead |
+//! | `device` | the sound device that goes and comes back |
 //! | `puppet` | other avatars, driven over UDP |
 //! | `sound` | sound files of every kind |
 //! | `voices` | text instead of labels: speech engines, recordings |
@@ -35,6 +36,7 @@
 mod backdrop;
 mod closures;
 mod config;
+mod device;
 mod export;
 mod expression;
 mod formats;

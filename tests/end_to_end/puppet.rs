@@ -204,7 +204,7 @@ fn avatars_are_driven_in_step_with_the_sound() {
     );
     let (ports, listeners): (Vec<u16>, Vec<_>) = kinds.iter().map(|_| listen(begun)).unzip();
     let mut args = vec!["run".to_owned(), "--listen".into(), listen_at];
-    args.extend(["--audio-device".into(), "none".into()]);
+    args.extend(["--audio-device", "none", "--http", "none"].map(String::from));
     for (kind, port) in kinds.iter().zip(&ports) {
         args.extend(["--drive".into(), format!("{kind}:127.0.0.1:{port}")]);
     }

@@ -41,6 +41,11 @@ pub struct StageArgs {
     /// ahead [default: 300]
     #[arg(long, value_name = "MS", value_parser = clap::value_parser!(u16).range(0..=500))]
     pub look_ahead: Option<u16>,
+    /// Show the picture later by so much, below 0 earlier, where screen or loudspeakers have a delay
+    /// of their own (see `mouthpiece doctor --sync`) [default: 0]
+    #[arg(long, value_name = "MS", allow_negative_numbers = true,
+          value_parser = clap::value_parser!(i16).range(-500..=500))]
+    pub av_offset: Option<i16>,
     /// Drive another avatar with what this face does as it is heard; may be repeated. KIND is vmc
     /// (VRM 1.0), vmc0 (VRM 0.x), vmc-arkit (ARKit's shapes), livelink (Unreal Engine) or osc
     #[arg(long, value_name = "KIND:HOST[:PORT]")]

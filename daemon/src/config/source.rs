@@ -98,6 +98,9 @@ impl StageArgs {
         if let Some(ms) = self.look_ahead {
             sound.look_ahead_ms = Whole::new(i64::from(ms));
         }
+        if let Some(ms) = self.av_offset {
+            sound.picture_delay_ms = Whole::new(i64::from(ms));
+        }
         set(&mut life.seed, self.seed.as_ref());
         if !self.drive.is_empty() {
             drive.to.clone_from(&self.drive);

@@ -23,7 +23,8 @@ use super::sound::Choice;
 use super::source::Source;
 use super::speaker;
 use super::stop::Stop;
-use super::sync::{self, Flash, Onsets};
+use super::sync::ear::Ear;
+use super::sync::{self, Flash, Onsets, skew};
 use super::window::{Display, Look, Wake};
 use crate::cli::{CastArgs, RunArgs, SayArgs, StageArgs, WireArgs};
 use crate::config::{self, Config};
@@ -153,6 +154,28 @@ pub fn sync_test(stage: &StageArgs, seconds: u32) -> Result<()> {
     let config = config::Source::new(stage, &WireArgs::default()).load()?;
     let (source, flash) = sync::clicks(seconds)?;
     perform(source, &config, Some(flash), &net, &stop)
+}
+
+/// The same, and what a recorder of the sound server's own says of it.
+pub fn doctor_sync(stage: &StageArgs, seconds: u32) -> Result<String> {
+    let stop = Stop::default();
+    let net = runtime(&stop, true)?;
+    let config = config::Source::new(stage, &WireArgs::default()).load()?;
+    let (source, flash) = sync::clicks(seconds)?;
+    let seen = std::sync::Arc::clone(&flash.seen);
+    let ear = Ear::start();
+    perform(source, &config, Some(flash), &net, &stop)?;
+    let clicks = ear.and_then(Ear::finish)?;
+    let flashes: Vec<_> = std::iter::from_fn(|| seen.pop()).collect();
+    let skews = skew::skews(&clicks, &flashes);
+    anyhow::ensure!(
+        !skews.is_empty(),
+        "{} clicks were heard and {} flashes shown, but none together: is the default sound device the one that plays?",
+        clicks.len(),
+        flashes.len()
+    );
+    let offset_ms = config.sound.picture_delay_ms.get();
+    Ok(skew::report(skews, flashes.len(), offset_ms))
 }
 
 /// Speaks `source` in this process.

@@ -53,6 +53,6 @@ mod window;
 #[global_allocator]
 static ALLOCATOR: assert_no_alloc::AllocDisabler = assert_no_alloc::AllocDisabler;
 
-pub use commands::{run, say, sync_test};
+pub use commands::{doctor_sync, run, say, sync_test};
 pub use sound::resample::Resample;
 pub use window::screens;

@@ -7,11 +7,13 @@
 //! |---|---|
 //! | `callback` | what the device calls: no lock, no allocation |
 //! | `device` | cpal; nothing else in the program knows it |
+//! | `opening` | opening a device, on a thread of its own |
 //! | `output` | the device or the steady clock in its place, the watchdog |
 //! | [`resample`] | any rate to any other, in pieces |
 
 mod callback;
 mod device;
+mod opening;
 mod output;
 pub mod resample;
 

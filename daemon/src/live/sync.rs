@@ -2,18 +2,24 @@
 //!
 //! The clicks are an utterance like any other and the flash goes by the tick that each picture is
 //! drawn for, so both take the very path that speech takes. The mouth opens with each click, too.
-//! Whoever records sound and screen from outside finds how far apart they are; nothing here
-//! measures itself.
+//! Whoever records sound and screen from outside finds how far apart they are (tests/live_sync.py).
+//! `doctor --sync` records the sound itself, with [`ear`], and takes the moment at which a picture
+//! was handed over for when it is seen; [`skew`] says what comes of it.
 
 use std::sync::Arc;
 use std::sync::atomic::{AtomicI64, Ordering};
+use std::time::Instant;
 
 use anyhow::Result;
+use crossbeam::queue::ArrayQueue;
 use mouthpiece_phonemes::{Phone, Segment};
 use mouthpiece_rig::TICK_RATE;
 
 use super::source::Source;
 use super::utterance::NOT_STARTED;
+
+pub mod ear;
+pub mod skew;
 
 /// How long a flash and the open mouth last.
 const FLASH_TICKS: i64 = TICK_RATE / 10;
@@ -30,6 +36,10 @@ pub struct Flash {
     pub start: Arc<AtomicI64>,
     clicks: Arc<[i64]>,
     onsets: Option<Arc<Onsets>>,
+    lit: bool,
+    /// When the first picture of each flash was handed to the screen; without clicks known before there
+    /// is room for one, and nobody asks.
+    pub seen: Arc<ArrayQueue<Instant>>,
 }
 
 impl Flash {
@@ -39,7 +49,19 @@ impl Flash {
             start: Arc::new(AtomicI64::new(NOT_STARTED)),
             clicks: Arc::default(),
             onsets: Some(onsets),
+            lit: false,
+            seen: Arc::new(ArrayQueue::new(1)),
         }
+    }
+
+    /// The picture of `tick` is on its way to the screen.
+    pub fn shown(&mut self, tick: i64) {
+        let lit = self.is_lit(tick);
+        if lit && !self.lit {
+            // There is room for as many as there are clicks.
+            let _ = self.seen.push(Instant::now());
+        }
+        self.lit = lit;
     }
 
     /// Whether the picture of `tick` flashes.
@@ -141,6 +163,8 @@ pub fn clicks(seconds: u32) -> Result<(Source, Flash)> {
     segments.push(Segment::new(Phone::HSharp, quiet_from, ticks));
     let flash = Flash {
         start: Arc::new(AtomicI64::new(NOT_STARTED)),
+        lit: false,
+        seen: Arc::new(ArrayQueue::new(clicks.len().max(1))),
         clicks: clicks.into(),
         onsets: None,
     };
@@ -174,11 +198,21 @@ mod tests {
 
     #[test]
     fn it_flashes_from_each_click_on_and_not_before_the_start_is_known() {
-        let (_, flash) = clicks(3).unwrap();
+        let (_, mut flash) = clicks(3).unwrap();
         let at = flash.clicks[1];
         assert!(!flash.is_lit(at));
         flash.start.store(1000, Ordering::Release);
         let lit = |tick: i64| flash.is_lit(1000 + tick);
         assert!(!lit(at - 1) && lit(at) && lit(at + FLASH_TICKS - 1) && !lit(at + FLASH_TICKS));
+        for tick in [
+            at - 1,
+            at + 9,
+            at + 10,
+            at + FLASH_TICKS,
+            at + 2 * TICK_RATE,
+        ] {
+            flash.shown(1000 + tick);
+        }
+        assert_eq!(flash.seen.len(), 1);
     }
 }

@@ -22,13 +22,18 @@ pub(super) struct Link {
     pub(super) silent_until: AtomicI64,
     /// Frames taken out of the ring so far: written by the callback.
     pub(super) taken: AtomicI64,
+    /// How long after the last callback its first frame is heard, as the device says: written by the
+    /// callback.
+    pub(super) latency_ns: AtomicI64,
     /// Callbacks that found too little in the ring.
     pub(super) underruns: AtomicU64,
     /// The device says that it is gone or must be opened anew.
     pub(super) lost: AtomicBool,
-    /// Another keeps the clock now: written by the sound thread, so that a device that wakes up
-    /// again says nothing any more.
-    pub(super) retired: AtomicBool,
+    /// The tick of the first frame that is taken: written by the sound thread before `on_air`.
+    pub(super) base: AtomicI64,
+    /// This device keeps the clock: written by the sound thread. Before, it plays silence and says
+    /// nothing; nor does one that was given up and wakes up again.
+    pub(super) on_air: AtomicBool,
 }
 
 /// The callback's state.
@@ -36,8 +41,6 @@ pub(super) struct Callback {
     pub(super) ring: Consumer<f32>,
     pub(super) link: Arc<Link>,
     pub(super) cell: Arc<ClockCell>,
-    /// The tick of the first frame.
-    pub(super) base: i64,
     pub(super) rate: u32,
     pub(super) channels: usize,
     taken: i64,
@@ -49,7 +52,6 @@ impl Callback {
         ring: Consumer<f32>,
         link: Arc<Link>,
         cell: Arc<ClockCell>,
-        base: i64,
         rate: u32,
         channels: usize,
     ) -> Self {
@@ -57,7 +59,6 @@ impl Callback {
             ring,
             link,
             cell,
-            base,
             rate,
             channels,
             taken: 0,
@@ -72,9 +73,10 @@ impl Callback {
         playback_ns: i64,
         sample: impl Fn(f32) -> T,
     ) {
-        if self.link.retired.load(Ordering::Acquire) {
+        if !self.link.on_air.load(Ordering::Acquire) {
             return;
         }
+        let base = self.link.base.load(Ordering::Relaxed);
         let wanted = out.len() / self.channels.max(1);
         let frames = self.ring.slots().min(wanted);
         let silent_until = self.link.silent_until.load(Ordering::Acquire);
@@ -92,8 +94,8 @@ impl Callback {
         }
         self.link.taken.store(self.taken, Ordering::Release);
         self.cell.publish(Stamp {
-            first: self.base + ticks_from_frames(first, self.rate),
-            end: self.base + ticks_from_frames(self.taken, self.rate),
+            first: base + ticks_from_frames(first, self.rate),
+            end: base + ticks_from_frames(self.taken, self.rate),
             playback_ns,
         });
     }
@@ -109,10 +111,11 @@ mod tests {
             rx,
             Arc::new(Link::default()),
             Arc::new(ClockCell::default()),
-            1_000,
             rate,
             2,
         );
+        callback.link.base.store(1_000, Ordering::Relaxed);
+        callback.link.on_air.store(true, Ordering::Release);
         (tx, callback)
     }
 
@@ -128,6 +131,18 @@ mod tests {
             (stamp.first, stamp.end, stamp.playback_ns),
             (1000, 1400, 77)
         );
+    }
+
+    #[test]
+    fn who_is_not_on_air_says_nothing_and_takes_nothing() {
+        let (mut tx, mut callback) = rig(48_000);
+        callback.link.on_air.store(false, Ordering::Release);
+        tx.push_entire_slice(&[0.5; 300]).unwrap();
+        let mut out = [0.0_f32; 400];
+        callback.fill(&mut out, 77, |x| x);
+        assert_eq!(out, [0.0; 400]);
+        assert_eq!(callback.cell.read(), None);
+        assert_eq!(tx.slots(), 10_000 - 300);
     }
 
     #[test]

@@ -35,12 +35,12 @@ pub(super) struct Device {
     pub(super) name: String,
 }
 
-/// Opens the device with that id, or the default one, and starts it. Its first frame is tick `base`.
+/// Opens the device with that id, or the default one, and starts it. It plays silence until it is put
+/// on the air. May take long.
 pub(super) fn open(
     wanted: Option<&str>,
     cell: &Arc<ClockCell>,
     origin: Origin,
-    base: i64,
 ) -> Result<Device, String> {
     let device = find(wanted)?;
     let name = device
@@ -62,7 +62,6 @@ pub(super) fn open(
             out,
             Arc::clone(&link),
             Arc::clone(cell),
-            base,
             rate,
             usize::from(config.channels),
         );
@@ -157,6 +156,7 @@ fn build<T: SizedSample + FromSample<f32>>(
                 let stamp = info.timestamp();
                 let ahead = stamp.playback.duration_since(stamp.callback);
                 let ahead_ns = i64::try_from(ahead.as_nanos()).unwrap_or(0);
+                callback.link.latency_ns.store(ahead_ns, Ordering::Relaxed);
                 callback.fill(out, origin.now_ns() + ahead_ns, T::from_sample);
             });
         },

@@ -7,10 +7,12 @@
 
 use std::sync::Arc;
 use std::sync::atomic::Ordering;
+use std::time::Duration;
 
 use mouthpiece_rig::TICK_RATE;
 
-use super::device::{self, Device};
+use super::device::Device;
+use super::opening::Opening;
 use super::resample::Resample;
 use crate::live::clock::{AudibleClock, ClockCell, Stamp};
 use crate::live::time::{Origin, seconds, ticks_from_frames, ticks_from_ns};
@@ -31,9 +33,14 @@ const OVERSLEPT_NS: i64 = 500_000_000;
 /// largest buffers that were seen.
 const PACE_NS: i64 = 8_000_000_000;
 const PACE_SPARE_TICKS: i64 = 4 * TICK_RATE;
-/// First and longest wait before a device is tried again.
-const RETRY_NS: i64 = 2_000_000_000;
-const RETRY_NS_MAX: i64 = 30_000_000_000;
+/// First and longest wait before a device is tried again: nothing tells of one that comes back, and
+/// a try costs next to nothing.
+const RETRY_NS: i64 = 1_000_000_000;
+const RETRY_NS_MAX: i64 = 4_000_000_000;
+/// How long the start waits for a device; one that takes longer is taken up when it comes.
+const START_PATIENCE: Duration = Duration::from_secs(4);
+/// A device's first words about its latency are often wrong; by then they are not.
+const SETTLED_NS: i64 = 1_000_000_000;
 /// How far a steady clock may be read beyond its last stamp.
 const STEADY_TICKS: i64 = TICK_RATE;
 
@@ -72,6 +79,8 @@ struct Watch {
     /// Where the pace was last taken: time and frames taken.
     pace: (i64, i64),
     underruns: u64,
+    /// Its latency was told.
+    told: bool,
 }
 
 /// The way out.
@@ -86,6 +95,8 @@ pub struct Output {
     polled_ns: i64,
     retry_ns: i64,
     backoff_ns: i64,
+    /// A device on its way; never more than one.
+    opening: Option<Opening>,
     /// Of the devices before this one.
     underruns: u64,
 }
@@ -107,13 +118,14 @@ impl Output {
             polled_ns: now_ns,
             retry_ns: now_ns,
             backoff_ns: RETRY_NS,
+            opening: None,
             underruns: 0,
         };
         if output.choice == Choice::Silent {
             output.retry_ns = i64::MAX;
             tracing::info!("no sound device wanted: a steady clock keeps time");
-        } else if let Err(why) = output.try_device(now_ns) {
-            tracing::warn!("{why}; going on without sound, a steady clock keeps time");
+        } else {
+            output.begin(now_ns);
         }
         output
     }
@@ -170,11 +182,26 @@ impl Output {
             self.give_up(fault, now_ns);
             return true;
         }
-        if !self.has_device() && now_ns >= self.retry_ns {
-            match self.try_device(now_ns) {
-                Ok(()) => return true,
-                Err(why) => tracing::debug!("{why}; still without sound"),
-            }
+        if self.has_device() {
+            return false;
+        }
+        if let Some(result) = self.opening.as_ref().and_then(Opening::poll) {
+            self.opening = None;
+            return match result.and_then(|device| self.adopt(device, now_ns)) {
+                Ok(()) => true,
+                Err(why) => {
+                    tracing::debug!("{why}; still without sound");
+                    self.try_later(now_ns);
+                    false
+                }
+            };
+        }
+        if self.opening.is_none()
+            && now_ns >= self.retry_ns
+            && let Err(why) = self.try_device()
+        {
+            tracing::debug!("{why}; still without sound");
+            self.try_later(now_ns);
         }
         false
     }
@@ -213,29 +240,53 @@ impl Output {
         }
     }
 
-    /// Opens the wanted device where time stands now.
-    fn try_device(&mut self, now_ns: i64) -> Result<(), String> {
+    /// Opens the wanted device for the first time.
+    fn begin(&mut self, now_ns: i64) {
+        let first = self.try_device();
+        let opened = match (first, &self.opening) {
+            (Err(why), _) => Err(why),
+            (Ok(()), Some(opening)) => match opening.wait(START_PATIENCE) {
+                Some(result) => {
+                    self.opening = None;
+                    result
+                }
+                None => Err("the sound device does not open".to_owned()),
+            },
+            (Ok(()), None) => return,
+        };
+        if let Err(why) = opened.and_then(|device| self.adopt(device, self.origin.now_ns())) {
+            tracing::warn!("{why}; going on without sound, a steady clock keeps time");
+            self.try_later(now_ns);
+        }
+    }
+
+    /// Begins to open the wanted device.
+    fn try_device(&mut self) -> Result<(), String> {
         let wanted = match &self.choice {
             Choice::Silent => return Ok(()),
             Choice::Default => None,
-            Choice::Id(id) => Some(id.as_str()),
+            Choice::Id(id) => Some(id.clone()),
         };
+        self.opening = Some(Opening::start(wanted, &self.cell, self.origin)?);
+        Ok(())
+    }
+
+    fn try_later(&mut self, now_ns: i64) {
+        self.retry_ns = now_ns + self.backoff_ns;
+        self.backoff_ns = (self.backoff_ns * 2).min(RETRY_NS_MAX);
+    }
+
+    /// Puts an open device on the air where time stands now.
+    fn adopt(&mut self, device: Device, now_ns: i64) -> Result<(), String> {
         let base = self.clock.at(now_ns);
-        let opened = device::open(wanted, &self.cell, self.origin, base)
-            .and_then(|device| Playing::new(device, base, self.origin.now_ns()));
-        match opened {
-            Ok(playing) => {
-                self.sink = Sink::Device(Box::new(playing));
-                self.written = base;
-                self.backoff_ns = RETRY_NS;
-                Ok(())
-            }
-            Err(why) => {
-                self.retry_ns = now_ns + self.backoff_ns;
-                self.backoff_ns = (self.backoff_ns * 2).min(RETRY_NS_MAX);
-                Err(why)
-            }
-        }
+        let playing = Playing::new(device, base, now_ns)?;
+        let link = &playing.device.link;
+        link.base.store(base, Ordering::Relaxed);
+        link.on_air.store(true, Ordering::Release);
+        self.sink = Sink::Device(Box::new(playing));
+        self.written = base;
+        self.backoff_ns = RETRY_NS;
+        Ok(())
     }
 
     /// Puts the steady clock in the device's place.
@@ -251,7 +302,7 @@ impl Output {
                 "the sound device {}; going on without sound, a steady clock keeps time", fault.words()
             );
             self.underruns += playing.watch.underruns;
-            playing.device.link.retired.store(true, Ordering::Release);
+            playing.device.link.on_air.store(false, Ordering::Release);
             close(*playing);
         }
         // What the dead device was given and did not play is handed over anew.
@@ -297,6 +348,7 @@ impl Playing {
                 limit_ns: SILENT_AT_START_NS,
                 pace: (now_ns, 0),
                 underruns: 0,
+                told: false,
             },
             device,
             base,
@@ -330,6 +382,10 @@ impl Playing {
             watch.called_ns = now_ns;
         } else if overslept {
             watch.called_ns = now_ns;
+        }
+        if now_ns - watch.opened_ns > SETTLED_NS && !std::mem::replace(&mut watch.told, true) {
+            let latency_ms = self.device.link.latency_ns.load(Ordering::Relaxed) as f64 * 1e-6;
+            tracing::info!(latency_ms, "the sound device has settled");
         }
         let underruns = self.device.link.underruns.load(Ordering::Relaxed);
         if underruns != watch.underruns {

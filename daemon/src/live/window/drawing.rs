@@ -119,6 +119,9 @@ impl App {
         let seen_ns = now_ns - begun_ns + self.pace.interval_ns() / 2;
         let skew_ns = seen_ns - ns_from_ticks(self.last_tick + self.look.delay - self.heard);
         self.pace.shown(begun_ns, now_ns);
+        if let Some(flash) = &mut self.flash {
+            flash.shown(self.last_tick);
+        }
         let moved = self.motion.differs(&self.frame);
         let vitals = &self.sight.vitals.window;
         vitals.shown(begun_ns, now_ns, moved, skew_ns);
