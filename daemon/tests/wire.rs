@@ -272,6 +272,10 @@ fn rude_clients_are_slowed_or_let_go_and_others_do_not_notice() {
     let garbage = b"\xff\n{\n[]\n0 0 0\n".repeat(200);
     let mut flooding = daemon.call();
     flooding.stream.write_all(&garbage).unwrap();
+    let codes: Vec<Value> = (0..300)
+        .map(|_| flooding.answer()["code"].clone())
+        .collect();
+    assert!(codes.contains(&json!("malformed")) && codes.contains(&json!("label")));
     let mut deaf = daemon.call();
     let deaf_since = Instant::now();
     deaf.stream
@@ -292,11 +296,6 @@ fn rude_clients_are_slowed_or_let_go_and_others_do_not_notice() {
             break;
         }
     }
-    let codes: Vec<Value> = (0..300)
-        .map(|_| flooding.answer()["code"].clone())
-        .collect();
-    assert!(codes.contains(&json!("malformed")) && codes.contains(&json!("label")));
-
     writing.join().unwrap();
     let codes: Vec<Value> = (0..2).map(|_| long.answer()["code"].clone()).collect();
     assert!(codes.contains(&json!("limit")), "{codes:?}");

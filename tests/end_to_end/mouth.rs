@@ -220,7 +220,9 @@ fn stressed_and_loud_syllables_open_wider() {
         let even = syllables(|i| i % 2 == 0, heard);
         let odd = syllables(|i| i % 2 == 1, heard);
         eprintln!("heard: {heard}: {even:.1?} {odd:.1?}");
-        for (i, (even, odd)) in even.iter().zip(&odd).enumerate() {
+        // How loud a voice is on the whole is not known while its first syllable is heard.
+        let known = usize::from(heard);
+        for (i, (even, odd)) in even.iter().zip(&odd).enumerate().skip(known) {
             let (more, less) = if i % 2 == 0 { (even, odd) } else { (odd, even) };
             assert!(more > &(less * 1.05), "syllable {i}: {more} {less}");
         }

@@ -39,6 +39,9 @@ const RETRY_NS: i64 = 1_000_000_000;
 const RETRY_NS_MAX: i64 = 4_000_000_000;
 /// How long the start waits for a device; one that takes longer is taken up when it comes.
 const START_PATIENCE: Duration = Duration::from_secs(4);
+/// A device that comes while time runs plays silence for so long before it keeps the clock: one that pauses
+/// after its first calls would stop the face.
+const WARM_NS: i64 = 2_500_000_000;
 /// A device's first words about its latency are often wrong; by then they are not.
 const SETTLED_NS: i64 = 1_000_000_000;
 /// How far a steady clock may be read beyond its last stamp.
@@ -97,6 +100,8 @@ pub struct Output {
     backoff_ns: i64,
     /// A device on its way; never more than one.
     opening: Option<Opening>,
+    /// One that is open and not yet on the air, and since when.
+    warming: Option<(Device, i64)>,
     /// Of the devices before this one.
     underruns: u64,
 }
@@ -119,6 +124,7 @@ impl Output {
             retry_ns: now_ns,
             backoff_ns: RETRY_NS,
             opening: None,
+            warming: None,
             underruns: 0,
         };
         if output.choice == Choice::Silent {
@@ -185,24 +191,34 @@ impl Output {
         if self.has_device() {
             return false;
         }
-        if let Some(result) = self.opening.as_ref().and_then(Opening::poll) {
-            self.opening = None;
-            return match result.and_then(|device| self.adopt(device, now_ns)) {
+        let warm = |(_, since_ns): &mut (Device, i64)| now_ns - *since_ns > WARM_NS;
+        if let Some((device, _)) = self.warming.take_if(warm) {
+            return match self.adopt(device, now_ns) {
                 Ok(()) => true,
-                Err(why) => {
-                    tracing::debug!("{why}; still without sound");
-                    self.try_later(now_ns);
-                    false
-                }
+                Err(why) => self.try_again(&why, now_ns),
             };
         }
+        if let Some(result) = self.opening.as_ref().and_then(Opening::poll) {
+            self.opening = None;
+            match result {
+                Ok(device) => self.warming = Some((device, now_ns)),
+                Err(why) => return self.try_again(&why, now_ns),
+            }
+        }
         if self.opening.is_none()
+            && self.warming.is_none()
             && now_ns >= self.retry_ns
             && let Err(why) = self.try_device()
         {
-            tracing::debug!("{why}; still without sound");
-            self.try_later(now_ns);
+            return self.try_again(&why, now_ns);
         }
+        false
+    }
+
+    /// Nothing has to be mixed again for a device that did not come.
+    fn try_again(&mut self, why: &str, now_ns: i64) -> bool {
+        tracing::debug!("{why}; still without sound");
+        self.try_later(now_ns);
         false
     }
 
