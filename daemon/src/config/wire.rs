@@ -21,7 +21,7 @@ section! {
         group: Option<String> = None => at_start,
         /// A file with a token of 16 characters or more that clients over TCP and WebSocket have to know.
         token_file: Option<PathBuf> = None => at_start,
-        /// Pages that may open a WebSocket, as browsers name them: "https://kiosk.example", "null" for a file.
+        /// Pages that may open a WebSocket, as browsers name them: `https://kiosk.example`, or `null` for a file.
         /// Pages of the daemon's own host may always, programs that are no browsers too.
         origins: Vec<String> = Vec::new() => at_start,
         /// The folder below which clients may name sound files. Not set: any file of this user over the Unix
