@@ -438,27 +438,19 @@ impl Session {
             };
             (code, why)
         })?;
+        let (start, end) = (segment.start, segment.end);
+        let check = |open: &mut Open| open.check(segment.phone.code(), start, end, &self.limits);
         // Checked against a copy first: a refused line must not open an utterance.
         match &mut self.open {
             Some(open) if open.raw => {
                 if open.void {
                     return Ok(());
                 }
-                open.check(
-                    segment.phone.code(),
-                    segment.start,
-                    segment.end,
-                    &self.limits,
-                )?;
+                check(open)?;
             }
             _ => {
                 let mut open = Open::raw(self.raw_id());
-                open.check(
-                    segment.phone.code(),
-                    segment.start,
-                    segment.end,
-                    &self.limits,
-                )?;
+                check(&mut open)?;
                 self.accept(open, Sound::Silent, out)?;
                 self.raw_count += 1;
             }
