@@ -88,7 +88,7 @@ fn check(actions: &[Action], whole: bool) {
             Action::Begin { id, .. } => {
                 assert!(accepted > 0, "begun and not accepted");
                 assert!(open.is_none() || !whole, "two are open");
-                (open, labelled) = (Some(id), 0);
+                (open, labelled) = (Some(id.as_str()), 0);
             }
             Action::Segments { id, segments } => {
                 assert_eq!(open, Some(id.as_str()));
