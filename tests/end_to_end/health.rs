@@ -207,7 +207,8 @@ fn in_a_browser(daemon: &Daemon) {
                 "--no-sandbox",
                 "--disable-gpu",
                 &profile,
-                "--timeout=4000",
+                // Time in the page waits for what it asks for, so that the first answer is shown.
+                "--virtual-time-budget=4000",
             ])
             .args(["--dump-dom", &page])
             .output()
