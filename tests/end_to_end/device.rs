@@ -5,7 +5,7 @@
 use std::io::{BufRead as _, BufReader, Read as _, Write as _};
 use std::net::UdpSocket;
 use std::os::unix::net::UnixStream;
-use std::path::{Path, PathBuf};
+use std::path::Path;
 use std::process::{Child, Command, Stdio};
 use std::time::{Duration, Instant};
 
@@ -26,6 +26,10 @@ const LOOK_AHEAD_S: f64 = 0.3;
 const SEEN_S: f64 = 0.035;
 /// A face that stands still for longer than this is frozen; the mouth changes twice a second.
 const FROZEN_S: f64 = 4.5;
+/// Sound in base64, 24 bytes: 6 samples of 0x4040, 6 of 0xc0c0.
+const WAVE: &str = "QEBAQEBAQEBAQEBAwMDAwMDAwMDAwMDA";
+/// A sample beyond this is [`WAVE`]'s, no silence.
+const LOUD: u16 = 4000;
 
 /// Ended whatever happens.
 struct Running(Child);
@@ -79,26 +83,15 @@ fn at_home<'a>(command: &'a mut Command, folder: &Path) -> &'a mut Command {
 
 /// How many loud samples the sink's monitor gives within `time`.
 fn loudness(folder: &Path, time: Duration) -> usize {
-    let mut recorder = Running::start(
-        at_home(&mut Command::new("parec"), folder)
-            .args(["-d", "test.monitor", "--raw", "--format=s16le"])
-            .args(["--rate=48000", "--channels=1"])
-            .stdout(Stdio::piped()),
-    );
-    let mut stream = recorder.0.stdout.take().unwrap();
-    let reading = std::thread::Builder::new().name("parec".to_owned());
-    let reading = reading.spawn(move || {
-        let mut bytes = Vec::new();
-        stream.read_to_end(&mut bytes).unwrap();
-        bytes
-    });
+    let (recorder, reading) = record(folder);
     std::thread::sleep(time);
     drop(recorder);
-    let bytes = reading.unwrap().join().unwrap();
-    let samples = bytes.chunks_exact(2);
-    samples
-        .filter(|b| i16::from_le_bytes([b[0], b[1]]).unsigned_abs() > 4000)
-        .count()
+    let tape = reading.join().unwrap();
+    tape.samples.iter().filter(|s| is_loud(s)).count()
+}
+
+fn is_loud(sample: &i16) -> bool {
+    sample.unsigned_abs() > LOUD
 }
 
 /// Whether the tools are here; in CI they must be.
@@ -114,16 +107,29 @@ fn has_tools() -> bool {
     !missing
 }
 
-/// A home whose default sound device is the private server's.
-fn home() -> tempfile::TempDir {
-    let home = tempfile::tempdir().unwrap();
-    let default = "pcm.!default pulse\nctl.!default pulse\n";
-    std::fs::write(home.path().join(".asoundrc"), default).unwrap();
-    home
+/// A daemon whose default sound device is a private server's.
+struct Stage {
+    /// Home of both.
+    home: tempfile::TempDir,
+    server: Running,
+    begun: Instant,
+    daemon: binary::Running,
+    client: UnixStream,
+    /// Where the daemon tells what its face does.
+    watcher: UdpSocket,
 }
 
-/// A daemon, its socket, and where it tells what its face does.
-fn daemon(folder: &Path, begun: Instant) -> (binary::Running, PathBuf, UdpSocket) {
+/// None: the tools are missing.
+fn stage() -> Option<Stage> {
+    if !has_tools() {
+        return None;
+    }
+    let home = tempfile::tempdir().unwrap();
+    let folder = home.path();
+    let default = "pcm.!default pulse\nctl.!default pulse\n";
+    std::fs::write(folder.join(".asoundrc"), default).unwrap();
+    let server = pulseaudio(folder);
+    let begun = Instant::now();
     let watcher = UdpSocket::bind("127.0.0.1:0").unwrap();
     watcher.set_nonblocking(true).unwrap();
     let socket = folder.join("face.sock");
@@ -134,12 +140,22 @@ fn daemon(folder: &Path, begun: Instant) -> (binary::Running, PathBuf, UdpSocket
     ];
     let mut command = binary::command(&args);
     let mut daemon = binary::start(at_home(&mut command, folder).stdout(Stdio::null()));
-    while !socket.exists() {
+    let client = loop {
+        if let Ok(client) = UnixStream::connect(&socket) {
+            break client;
+        }
         assert!(!daemon.has_ended(), "{}", daemon.finish().stderr);
         assert!(begun.elapsed() < PATIENCE, "no socket");
         std::thread::sleep(Duration::from_millis(10));
-    }
-    (daemon, socket, watcher)
+    };
+    Some(Stage {
+        client,
+        home,
+        server,
+        begun,
+        daemon,
+        watcher,
+    })
 }
 
 /// The gap between the lips of each packet that tells it, and when it came.
@@ -199,7 +215,7 @@ fn record(folder: &Path) -> (Running, std::thread::JoinHandle<Tape>) {
 impl Tape {
     /// When the first loud sample was heard, seconds after `begun`: pieces come late, never early.
     fn onset(&self, begun: Instant) -> f64 {
-        let loud = self.samples.iter().position(|s| s.unsigned_abs() > 4000);
+        let loud = self.samples.iter().position(is_loud);
         let loud = loud.expect("nothing was heard") as f64 / 48_000.0;
         let lateness = self.pieces.iter().map(|(came, count)| {
             came.saturating_duration_since(begun).as_secs_f64() - *count as f64 / 48_000.0
@@ -213,25 +229,25 @@ impl Tape {
 /// no later than the sound begins.
 #[test]
 fn the_first_sound_comes_in_time_and_the_mouth_no_later() {
-    if !has_tools() {
-        return;
-    }
-    let home = home();
+    let Some(stage) = stage() else { return };
+    let Stage {
+        home,
+        server,
+        begun,
+        daemon,
+        mut client,
+        watcher,
+    } = stage;
     let folder = home.path();
-    let server = pulseaudio(folder);
-    let begun = Instant::now();
-    let (daemon, socket, watcher) = daemon(folder, begun);
     let (recorder, reading) = record(folder);
     // Until stamps of the device are settled, and the log says its latency.
     std::thread::sleep(Duration::from_secs(3));
-    let mut client = UnixStream::connect(&socket).unwrap();
     let look = Duration::from_millis(5);
     client.set_read_timeout(Some(look)).unwrap();
-    let wave = "QEBAQEBAQEBAQEBAwMDAwMDAwMDAwMDA";
     for line in [
         json!({"type": "begin", "id": "a", "audio": {"rate": 8000, "channels": 1, "format": "s16"}}),
         json!({"type": "phones", "phones": [{"start": 0.0, "end": 0.6, "phone": "aa"}]}),
-        json!({"type": "audio", "data": wave.repeat(400)}),
+        json!({"type": "audio", "data": WAVE.repeat(400)}),
         json!({"type": "end"}),
     ] {
         writeln!(client, "{line}").unwrap();
@@ -282,17 +298,18 @@ fn the_first_sound_comes_in_time_and_the_mouth_no_later() {
 /// ends when it should, nothing of it is lost, and the sound comes back by itself.
 #[test]
 fn a_sound_server_that_goes_for_ten_seconds_stops_only_the_sound() {
-    if !has_tools() {
-        return;
-    }
-    let home = home();
+    let Some(stage) = stage() else { return };
+    let Stage {
+        home,
+        server,
+        begun,
+        daemon,
+        mut client,
+        watcher,
+    } = stage;
     let folder = home.path();
-    let server = pulseaudio(folder);
-    let begun = Instant::now();
-    let (daemon, socket, watcher) = daemon(folder, begun);
 
     // A square wave of 8 kHz in as many lines as it takes, and a mouth that opens and closes.
-    let mut client = UnixStream::connect(&socket).unwrap();
     let phones: Vec<Value> = (0..(UTTERANCE_S / 0.5) as i32)
         .map(|n| {
             let start = f64::from(n) * 0.5;
@@ -303,14 +320,12 @@ fn a_sound_server_that_goes_for_ten_seconds_stops_only_the_sound() {
         json!({"type": "begin", "id": "a", "audio": {"rate": 8000, "channels": 1, "format": "s16"}}),
         json!({"type": "phones", "phones": phones}),
     ];
-    // 24 bytes: 6 samples of 0x4040, 6 of 0xc0c0.
-    let wave = "QEBAQEBAQEBAQEBAwMDAwMDAwMDAwMDA";
     for _ in 0..UTTERANCE_S as usize {
-        lines.push(json!({"type": "audio", "data": wave.repeat(8000 / 12)}));
+        lines.push(json!({"type": "audio", "data": WAVE.repeat(8000 / 12)}));
     }
     // What is missing to whole seconds by the rounding above.
     lines.push(
-        json!({"type": "audio", "data": wave.repeat(8000 % 12 * UTTERANCE_S as usize / 12 + 1)}),
+        json!({"type": "audio", "data": WAVE.repeat(8000 % 12 * UTTERANCE_S as usize / 12 + 1)}),
     );
     lines.push(json!({"type": "end"}));
     for line in lines {
