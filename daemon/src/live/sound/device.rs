@@ -163,11 +163,10 @@ fn build<T: SizedSample + FromSample<f32>>(
         move |error| {
             // An underrun has been mended already by the time it is told; logging is not for this
             // thread, and a device that is silent without a word is the watchdog's.
-            if matches!(
-                error.kind(),
-                ErrorKind::DeviceNotAvailable | ErrorKind::StreamInvalidated
-            ) {
-                link.lost.store(true, Ordering::Release);
+            match error.kind() {
+                ErrorKind::Xrun => {}
+                ErrorKind::DeviceNotAvailable | ErrorKind::StreamInvalidated => link.failed(true),
+                _ => link.failed(false),
             }
         },
         None,

@@ -13,7 +13,7 @@ use mouthpiece_rig::TICK_RATE;
 
 use super::device::Device;
 use super::opening::Opening;
-use super::resample::Resample;
+use super::playing::{Fault, Playing};
 use crate::live::clock::{AudibleClock, ClockCell, Stamp};
 use crate::live::time::{Origin, seconds, ticks_from_frames, ticks_from_ns};
 
@@ -21,18 +21,8 @@ use crate::live::time::{Origin, seconds, ticks_from_frames, ticks_from_ns};
 const LEAD_TICKS: i64 = TICK_RATE * 80 / 1000;
 /// Ticks mixed at once.
 pub const BLOCK_TICKS: usize = 480;
-/// A device that has not called for this long is dead. Some pause for up to 2 s when they start and
-/// after an underrun: a PulseAudio sink that nobody else uses prepares that much at once.
-const SILENT_NS: i64 = 2_500_000_000;
-const SILENT_AT_START_NS: i64 = 3_000_000_000;
-/// Periods that may be missed before the above counts, for devices with long ones.
-const SILENT_PERIODS: i64 = 8;
 /// The sound thread itself was not let run (suspended process): judge nothing by that.
 const OVERSLEPT_NS: i64 = 500_000_000;
-/// Over this long a device may take half as much sound again as time passes, and what fills the
-/// largest buffers that were seen.
-const PACE_NS: i64 = 8_000_000_000;
-const PACE_SPARE_TICKS: i64 = 4 * TICK_RATE;
 /// First and longest wait before a device is tried again: nothing tells of one that comes back, and
 /// a try costs next to nothing.
 const RETRY_NS: i64 = 1_000_000_000;
@@ -42,8 +32,6 @@ const START_PATIENCE: Duration = Duration::from_secs(4);
 /// A device that comes while time runs plays silence for so long before it keeps the clock: one that pauses
 /// after its first calls would stop the face.
 const WARM_NS: i64 = 2_500_000_000;
-/// A device's first words about its latency are often wrong; by then they are not.
-const SETTLED_NS: i64 = 1_000_000_000;
 /// How far a steady clock may be read beyond its last stamp.
 const STEADY_TICKS: i64 = TICK_RATE;
 
@@ -61,29 +49,6 @@ pub enum Choice {
 enum Sink {
     Device(Box<Playing>),
     Steady { base: i64, since_ns: i64 },
-}
-
-struct Playing {
-    device: Device,
-    base: i64,
-    /// Frames put into the ring.
-    pushed: i64,
-    resample: Resample,
-    frames: Vec<f32>,
-    watch: Watch,
-}
-
-/// What the watchdog remembers.
-struct Watch {
-    opened_ns: i64,
-    calls: u64,
-    called_ns: i64,
-    limit_ns: i64,
-    /// Where the pace was last taken: time and frames taken.
-    pace: (i64, i64),
-    underruns: u64,
-    /// Its latency was told.
-    told: bool,
 }
 
 /// The way out.
@@ -190,6 +155,11 @@ impl Output {
         }
         if self.has_device() {
             return false;
+        }
+        let lost = |(device, _): &mut (Device, i64)| device.link.lost.load(Ordering::Acquire);
+        if let Some((device, _)) = self.warming.take_if(lost) {
+            close(device);
+            return self.try_again("the sound device went before it was warm", now_ns);
         }
         let warm = |(_, since_ns): &mut (Device, i64)| now_ns - *since_ns > WARM_NS;
         if let Some((device, _)) = self.warming.take_if(warm) {
@@ -319,7 +289,7 @@ impl Output {
             );
             self.underruns += playing.watch.underruns;
             playing.device.link.on_air.store(false, Ordering::Release);
-            close(*playing);
+            close(playing.device);
         }
         // What the dead device was given and did not play is handed over anew.
         self.written = base;
@@ -335,103 +305,11 @@ impl Output {
     }
 }
 
-#[derive(Clone, Copy)]
-enum Fault {
-    Gone,
-    Silent,
-    Unpaced,
-}
-
-impl Fault {
-    fn words(self) -> &'static str {
-        match self {
-            Self::Gone => "is gone",
-            Self::Silent => "has stopped asking for sound",
-            Self::Unpaced => "takes sound faster than time passes and is of no use as a clock",
-        }
-    }
-}
-
-impl Playing {
-    fn new(device: Device, base: i64, now_ns: i64) -> Result<Self, String> {
-        let ticks = u32::try_from(TICK_RATE).map_err(|e| e.to_string())?;
-        let resample = Resample::new(ticks, device.rate).map_err(|e| format!("{e:#}"))?;
-        Ok(Self {
-            watch: Watch {
-                opened_ns: now_ns,
-                calls: 0,
-                called_ns: now_ns,
-                limit_ns: SILENT_AT_START_NS,
-                pace: (now_ns, 0),
-                underruns: 0,
-                told: false,
-            },
-            device,
-            base,
-            pushed: 0,
-            resample,
-            frames: Vec::new(),
-        })
-    }
-
-    fn push(&mut self, mixed: &[f32]) {
-        self.frames.clear();
-        if let Err(error) = self.resample.push(mixed, &mut self.frames) {
-            tracing::error!("sound was lost: {error:#}");
-        }
-        let (_, left) = self.device.ring.push_partial_slice(&self.frames);
-        self.pushed += i64::try_from(self.frames.len() - left.len()).unwrap_or(0);
-    }
-
-    fn fault(&mut self, cell: &ClockCell, now_ns: i64, overslept: bool) -> Option<Fault> {
-        let watch = &mut self.watch;
-        let calls = cell.count();
-        if calls != watch.calls {
-            let period_ns =
-                i64::from(self.device.period) * 1_000_000_000 / i64::from(self.device.rate.max(1));
-            // The first calls are far apart in some devices, so the patience of the start lasts a
-            // few of them.
-            if now_ns - watch.opened_ns > SILENT_AT_START_NS {
-                watch.limit_ns = SILENT_NS.max(SILENT_PERIODS * period_ns);
-            }
-            watch.calls = calls;
-            watch.called_ns = now_ns;
-        } else if overslept {
-            watch.called_ns = now_ns;
-        }
-        if now_ns - watch.opened_ns > SETTLED_NS && !std::mem::replace(&mut watch.told, true) {
-            let latency_ms = self.device.link.latency_ns.load(Ordering::Relaxed) as f64 * 1e-6;
-            tracing::info!(latency_ms, "the sound device has settled");
-        }
-        let underruns = self.device.link.underruns.load(Ordering::Relaxed);
-        if underruns != watch.underruns {
-            tracing::debug!(underruns, "the sound device ran dry");
-            watch.underruns = underruns;
-        }
-        if self.device.link.lost.load(Ordering::Acquire) {
-            return Some(Fault::Gone);
-        }
-        if now_ns - watch.called_ns > watch.limit_ns {
-            return Some(Fault::Silent);
-        }
-        let taken = self.device.link.taken.load(Ordering::Acquire);
-        let elapsed_ns = now_ns - watch.pace.0;
-        let played = ticks_from_frames(taken - watch.pace.1, self.device.rate);
-        if played > ticks_from_ns(elapsed_ns) * 3 / 2 + PACE_SPARE_TICKS {
-            return Some(Fault::Unpaced);
-        }
-        if elapsed_ns > PACE_NS {
-            watch.pace = (now_ns, taken);
-        }
-        None
-    }
-}
-
 /// Closes a device on a thread of its own: some that have died do not let go.
-fn close(playing: Playing) {
+fn close(device: Device) {
     let closing = std::thread::Builder::new()
         .name("sound-close".to_owned())
-        .spawn(move || drop(playing.device.stream));
+        .spawn(move || drop(device.stream));
     if let Err(error) = closing {
         tracing::warn!(%error, "a dead sound device was not closed");
     }
