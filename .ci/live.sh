@@ -17,8 +17,9 @@ else
     status=0
     python3 tests/live_sync.py --seconds "${1:-20}" --limit-ms "$limit_ms" </dev/null || status=$?
     if [ "$status" = 0 ]; then
-        # Two minutes say little of memory: what is still growing into its size may.
-        python3 tests/soak.py --minutes 2 --skew-ms "$limit_ms" --skew-share 0.9 --growth-mb 8 </dev/null || status=$?
+        # Two minutes say little of memory (what is still growing into its size may), nor of a trend of less than a
+        # picture's time.
+        python3 tests/soak.py --minutes 2 --skew-ms "$limit_ms" --skew-share 0.9 --trend-ms 40 --growth-mb 8 </dev/null || status=$?
     fi
 fi
 if [ "$status" = 2 ] && [ -z "${CI:-}" ]; then
