@@ -314,6 +314,33 @@ fn rude_clients_are_slowed_or_let_go_and_others_do_not_notice() {
     assert!(turned_away.filter(|a| a["code"] == "busy").count() >= 2);
 }
 
+/// Guards whoever changes bounds against having to end the daemon: who connects from then on finds the new ones, who
+/// was there keeps its own.
+#[test]
+fn changed_bounds_are_found_by_who_connects_from_then_on() {
+    let folder = tempfile::tempdir().unwrap();
+    let config = configured(folder.path(), "");
+    let daemon = Daemon::start_with(&folder.path().join("face.sock"), &["--config", &config]);
+    let judged = |client: &mut Client| {
+        // One that was turned away takes nothing.
+        let _ = writeln!(client.stream, "{}", "x".repeat(2000));
+        client.next().map(|answer| answer["code"].clone())
+    };
+    let mut old = daemon.call();
+    assert_eq!(judged(&mut old), Some(json!("malformed")));
+    configured(folder.path(), "line_bytes = 1024\nclients = 2\n");
+    daemon.signal("-HUP");
+    let begun = Instant::now();
+    let mut second = daemon.call();
+    while judged(&mut second) != Some(json!("limit")) {
+        assert!(begun.elapsed() < PATIENCE, "the new bounds are not found");
+        std::thread::sleep(Duration::from_millis(20));
+        second = daemon.call();
+    }
+    assert_eq!(daemon.call().answer()["code"], "busy", "there are two");
+    assert_eq!(judged(&mut old), Some(json!("malformed")));
+}
+
 /// Guards files of the daemon's user against clients.
 #[test]
 fn sound_files_are_read_below_their_folder_only() {

@@ -1,5 +1,6 @@
 //! Health: what a supervisor, Prometheus and a person with a browser are told, and faults that must heal.
 
+use std::os::unix::fs::PermissionsExt as _;
 use std::process::Command;
 use std::time::{Duration, Instant};
 
@@ -136,6 +137,29 @@ fn other_machines_are_let_in_with_a_token_only() {
         "{}",
         ended.stderr
     );
+
+    let (file, token) = (folder.path().join("token"), "0123456789abcdefghij");
+    std::fs::write(&file, token).unwrap();
+    std::fs::set_permissions(&file, std::fs::Permissions::from_mode(0o600)).unwrap();
+    let file = file.to_string_lossy();
+    let daemon = Daemon::start_at("0.0.0.0:0", None, &["--token-file", &*file]);
+    let ask = |path: &str, header: &str| {
+        let head = format!("GET {path} HTTP/1.1\r\nHost: kiosk.example\r\n");
+        daemon.request(&format!("{head}{header}Connection: close\r\n\r\n"))
+    };
+    for path in ["/", "/healthz", "/metrics", "/status.json", "/preview.png"] {
+        for header in ["", "Authorization: Bearer 0123456789abcdefghiJ\r\n"] {
+            let refused = ask(path, header);
+            assert_eq!(refused.code, 401, "{path} {header}");
+            assert!(refused.header("www-authenticate").contains("Basic"));
+            assert!(!refused.text().contains("mouthpiece_"));
+        }
+    }
+    let bearer = format!("Authorization: Bearer {token}\r\n");
+    for path in ["/", "/metrics", "/status.json"] {
+        assert_eq!(ask(path, &bearer).code, 200, "{path}");
+    }
+    assert!(!daemon.log().contains(token));
 }
 
 /// Each line is a comment, or a name, perhaps labels, and a number; the last one is the end.

@@ -20,6 +20,8 @@
 //! | `voices` | text instead of labels: speech engines, recordings |
 //! | `config` | the configuration file: checked, printed, under flags |
 //! | `kiosk` | a face that is watched over: systemd, a changed configuration, the end |
+//! | `reload` | no picture lost over a configuration that is replaced |
+//! | `vanished` | a client over TCP that is gone without a word |
 //! | `usage` | exit statuses, help, what doctor and bench print |
 //! | `show` | what lies under the skin, drawn |
 //! | `still` | pictures against golden ones |
@@ -53,8 +55,10 @@ mod mouth;
 mod outline;
 mod puppet;
 mod readme;
+mod reload;
 mod show;
 mod sound;
 mod still;
 mod usage;
+mod vanished;
 mod voices;

@@ -64,9 +64,15 @@ impl Daemon {
     /// Starts one with `more` arguments, on `screen` or without any, and waits until it tells its health. It logs JSON.
     #[must_use]
     pub fn start(screen: Option<&Screen>, more: &[&str]) -> Self {
+        Self::start_at("127.0.0.1:0", screen, more)
+    }
+
+    /// The same, with its health told at `http`, a port of its own.
+    #[must_use]
+    pub fn start_at(http: &str, screen: Option<&Screen>, more: &[&str]) -> Self {
         let folder = tempfile::tempdir().expect("a folder for the socket");
         let socket = folder.path().join("face.sock");
-        let mut command = binary::command(&["run", "--log-json", "--http", "127.0.0.1:0"]);
+        let mut command = binary::command(&["run", "--log-json", "--http", http]);
         command
             .args(["--audio-device", "none", "--listen"])
             .arg(&socket);
@@ -127,6 +133,20 @@ impl Daemon {
             "GET {path} HTTP/1.1\r\nHost: {}\r\nConnection: close\r\n\r\n",
             self.http
         ))
+    }
+
+    /// Waits until the log holds `words` so many times.
+    #[track_caller]
+    pub fn wait_for_log(&self, words: &str, times: usize) {
+        let begun = Instant::now();
+        while self.log().matches(words).count() < times {
+            assert!(
+                begun.elapsed() < PATIENCE,
+                "{words:?} is not said\n{}",
+                self.log()
+            );
+            std::thread::sleep(Duration::from_millis(20));
+        }
     }
 
     /// Sends a request as it is.

@@ -95,6 +95,11 @@ impl Figures {
             rate,
         )?;
         out.spread(
+            "picture_interval",
+            "Time between two pictures: a long one is a picture lost",
+            &window.intervals_ns,
+        )?;
+        out.spread(
             "draw",
             "From taking the time to handing the picture over",
             &window.draw_ns,

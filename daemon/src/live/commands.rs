@@ -62,11 +62,12 @@ pub fn run(args: &RunArgs) -> Result<()> {
         let health = Health::new(vitals, sight.shots.clone(), config.health.stall_ms.get());
         net.spawn(door.serve(health));
     }
-    let serving = net.spawn(server.serve(player.handle()));
+    let current = Current::new(ArcSwap::from_pointee(config));
+    let serving = net.spawn(server.serve(player.handle(), Arc::clone(&current)));
     let leaving = net.spawn(goodbye(stop.clone(), player.handle(), serving));
     let reload = |window| Reload {
         source,
-        current: Current::new(ArcSwap::from_pointee(config)),
+        current,
         player: player.handle(),
         window,
     };

@@ -5,25 +5,30 @@
 //! behind it. Silence is mixed while nobody speaks, so that the clock never stops. What comes too
 //! late for its place is dropped, never raced through. `stop` silences what was handed over
 //! already, and the face is cued to relax from the tick that silence begins at.
+//!
+//! `messages` holds what comes in and what goes to the face, `news` what is told once a turn.
 
-use mouthpiece_phonemes::Segment;
-use mouthpiece_protocol::ErrorCode;
-use mouthpiece_speech::{Delivery, Speech, Track};
-use tokio::sync::mpsc;
+mod messages;
+mod news;
 
 use std::sync::Arc;
 use std::thread::Thread;
 use std::time::Duration;
+
+use mouthpiece_protocol::ErrorCode;
+use mouthpiece_speech::Speech;
+use tokio::sync::mpsc;
 
 use super::captions::Captions;
 use super::rules::Rules;
 use super::showing::Showing;
 use super::sound::Output;
 use super::sync::{Listening, Onsets};
-use super::time::{Flow, seconds};
+use super::time::Flow;
 use super::utterance::{Begin, Utterance};
-use super::vitals::{DeviceState, Vitals};
+use super::vitals::Vitals;
 use crate::config::Turns;
+pub use messages::{Command, Cue};
 
 /// Commands that wait for the sound thread; who sends more waits.
 pub const COMMANDS_MAX: usize = 64;
@@ -31,50 +36,6 @@ pub const COMMANDS_MAX: usize = 64;
 pub const CUES_MAX: usize = 1024;
 /// How often the thread looks after the ring, which holds several times as much.
 const TURN: Duration = Duration::from_millis(10);
-
-/// What the sound thread is told.
-#[derive(Debug)]
-pub enum Command {
-    /// A new utterance.
-    Begin(Begin),
-    /// Its labels, in order.
-    Segments(u64, Vec<Segment>),
-    /// Its sound, 48 kHz, one channel.
-    Sound(u64, Vec<f32>),
-    /// All of it was sent.
-    End(u64),
-    /// It cannot be had.
-    Fail(u64, ErrorCode, String),
-    /// Stop one utterance, or everything.
-    Stop(Option<u64>),
-    /// What the face shows from now on.
-    Show(Showing),
-    /// A text for the screen: from this tick of an utterance's sound on, or at once.
-    Caption(Option<u64>, i64, Arc<str>),
-    /// The process ends.
-    Quit,
-}
-
-/// What the simulation thread is told, by an utterance's key.
-#[derive(Debug)]
-pub enum Cue {
-    /// Speak `track` from tick `start` on.
-    Start {
-        key: u64,
-        start: i64,
-        track: Box<Track>,
-    },
-    /// More labels, in ticks from its start.
-    Segments { key: u64, segments: Vec<Segment> },
-    /// More of how it sounds.
-    Heard { key: u64, delivery: Delivery },
-    /// Nothing of it from tick `at` on.
-    Stop { key: u64, at: i64 },
-    /// It is over and may be forgotten.
-    Done { key: u64 },
-    /// Show this from the instant on that is heard when it comes.
-    Show(Showing),
-}
 
 /// What leads to and from the sound thread.
 pub struct Ends {
@@ -218,6 +179,7 @@ impl Conductor {
                     utterance.captions.push((start, text));
                 }
             }
+            Command::Rules(rules) => self.rules = *rules,
             Command::Quit => self.quit = true,
         }
     }
@@ -359,81 +321,6 @@ impl Conductor {
         let mut track = Box::new(self.speech.track(&utterance.segments));
         track.hear(&utterance.delivery);
         self.cue(Cue::Start { key, start, track });
-    }
-
-    /// Tells clients what is heard, and lets go of what was.
-    fn tell(&mut self, now_ns: i64) {
-        let audible = self.output.audible(now_ns);
-        let written = self.output.written();
-        let mut over = Vec::new();
-        for utterance in &mut self.utterances {
-            utterance.tell_position(audible);
-            if utterance.end().is_some_and(|end| end <= audible) {
-                utterance.tell_finished();
-                self.vitals.sound.finished.add(1);
-                over.push(utterance.key);
-            } else if !utterance.ended {
-                let (hungry, most) = match utterance.start {
-                    Some(start) => (
-                        written - start - utterance.covered(),
-                        self.rules.starved_ticks,
-                    ),
-                    None => (audible - utterance.fed, self.rules.unbegun_ticks()),
-                };
-                if hungry > most {
-                    let why = format!(
-                        "nothing came for {:.0} seconds; the utterance is over",
-                        seconds(most)
-                    );
-                    utterance.tell_failed(ErrorCode::Busy, why);
-                    self.vitals.sound.failed.add(1);
-                    over.push(utterance.key);
-                }
-            }
-        }
-        for key in over {
-            self.remove(key);
-            self.cue(Cue::Done { key });
-        }
-        let held: i64 = self.utterances.iter().map(Utterance::sound_ticks).sum();
-        let vitals = &self.vitals.sound;
-        vitals.queue.set(self.utterances.len() as i64);
-        vitals.held.set(held);
-        vitals.audible.set(audible);
-        vitals.underruns.set(self.output.underruns());
-        vitals.set_device(if self.output.has_device() {
-            DeviceState::Playing
-        } else if self.output.wants_device() {
-            DeviceState::Missing
-        } else {
-            DeviceState::Unwanted
-        });
-        self.caption(audible);
-    }
-
-    /// Shows the text that goes with what is heard, and clears it with its utterance.
-    fn caption(&mut self, audible: i64) {
-        let mut now = None;
-        for utterance in &self.utterances {
-            let Some(heard) = utterance.start.map(|start| audible - start) else {
-                continue;
-            };
-            let begun = utterance.captions.partition_point(|(at, _)| *at <= heard);
-            if let Some((_, text)) = begun.checked_sub(1).map(|n| &utterance.captions[n]) {
-                now = Some(((utterance.key, begun), text));
-            }
-        }
-        match now {
-            Some((which, text)) if self.captioned != Some(which) => {
-                self.ends.captions.set(Arc::clone(text));
-                self.captioned = Some(which);
-                self.captioned_alone = false;
-            }
-            None if self.captioned.take().is_some() && !self.captioned_alone => {
-                self.ends.captions.set(Arc::from(""));
-            }
-            _ => {}
-        }
     }
 
     fn find(&mut self, key: u64) -> Option<&mut Utterance> {

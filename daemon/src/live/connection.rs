@@ -9,6 +9,7 @@ mod face;
 pub mod files;
 pub mod peer;
 mod rate;
+mod words;
 
 use std::collections::HashMap;
 use std::path::PathBuf;
@@ -26,6 +27,8 @@ use crate::media::wav;
 use files::Files;
 use peer::{Heard, Peer};
 use rate::Rate;
+pub use words::refusal;
+use words::{silence, slowness};
 
 /// Bytes that are acted on before the rate is looked at again: 4096 lines at most.
 const SLICE_BYTES: usize = 4096;
@@ -167,7 +170,10 @@ impl Client {
 
     /// What is to be acted on next, once the rate allows it.
     async fn hear(&mut self) -> Heard {
-        tokio::time::sleep_until(self.paused).await;
+        // A timer that is due already costs a millisecond all the same.
+        if self.paused > Instant::now() {
+            tokio::time::sleep_until(self.paused).await;
+        }
         if self.rest.is_empty() {
             match self.peer.hear().await {
                 Heard::Bytes(bytes) => self.rest = bytes,
@@ -214,38 +220,49 @@ impl Client {
         Ok(())
     }
 
+    /// Does all of it, though the client may be gone before its end: an answer that nobody takes must not
+    /// cost an utterance its end.
     async fn act(&mut self, actions: &mut Vec<Action>) -> std::io::Result<()> {
+        let mut alive = Ok(());
         for action in actions.drain(..) {
-            match action {
-                Action::Reply(message) => self.send(&message).await?,
-                Action::Begin { id, sound } => self.begin(id, sound).await,
-                Action::Segments { id, segments } => {
-                    if let Some(&key) = self.keys.get(&id) {
-                        self.handle.segments(key, segments).await;
-                    }
-                }
-                Action::Audio { id, mono } => self.sound(&id, &mono).await,
-                Action::End { id } => self.end(&id).await,
-                Action::Stop { id: None } => self.handle.stop(None).await,
-                Action::Stop { id: Some(id) } => {
-                    if let Some(&key) = self.keys.get(&id) {
-                        self.handle.stop(Some(key)).await;
-                    }
-                }
-                Action::Express(express) => match face::express(&express) {
-                    Ok(showing) => self.handle.show(showing).await,
-                    Err(error) => {
-                        let message = refusal(ErrorCode::Face, error.to_string());
-                        self.send(&message).await?;
-                    }
-                },
-                Action::Look(look) => self.handle.show(face::look(&look)).await,
-                Action::State(state) => self.handle.show(face::state(state)).await,
-                Action::Caption { id, start, text } => self.caption(id, start, text).await,
-                Action::Close => return Err(gone()),
-            }
+            let done = match self.perform(action).await {
+                Ok(Some(message)) if alive.is_ok() => self.send(&message).await,
+                Ok(_) => Ok(()),
+                Err(error) => Err(error),
+            };
+            alive = alive.and(done);
         }
-        Ok(())
+        alive
+    }
+
+    /// Has the player do what is asked for; returns what the client is told of it. An error ends the connection.
+    async fn perform(&mut self, action: Action) -> std::io::Result<Option<DaemonMessage>> {
+        match action {
+            Action::Reply(message) => return Ok(Some(message)),
+            Action::Begin { id, sound } => self.begin(id, sound).await,
+            Action::Segments { id, segments } => {
+                if let Some(&key) = self.keys.get(&id) {
+                    self.handle.segments(key, segments).await;
+                }
+            }
+            Action::Audio { id, mono } => self.sound(&id, &mono).await,
+            Action::End { id } => self.end(&id).await,
+            Action::Stop { id: None } => self.handle.stop(None).await,
+            Action::Stop { id: Some(id) } => {
+                if let Some(&key) = self.keys.get(&id) {
+                    self.handle.stop(Some(key)).await;
+                }
+            }
+            Action::Express(express) => match face::express(&express) {
+                Ok(showing) => self.handle.show(showing).await,
+                Err(error) => return Ok(Some(refusal(ErrorCode::Face, error.to_string()))),
+            },
+            Action::Look(look) => self.handle.show(face::look(&look)).await,
+            Action::State(state) => self.handle.show(face::state(state)).await,
+            Action::Caption { id, start, text } => self.caption(id, start, text).await,
+            Action::Close => return Err(gone()),
+        }
+        Ok(None)
     }
 
     async fn begin(&mut self, id: String, sound: Sound) {
@@ -363,34 +380,5 @@ fn gone() -> std::io::Error {
     std::io::ErrorKind::ConnectionAborted.into()
 }
 
-/// An error that is about no utterance.
-pub fn refusal(code: ErrorCode, message: String) -> DaemonMessage {
-    DaemonMessage::Error {
-        id: None,
-        code,
-        message,
-        fatal: false,
-    }
-}
-
-/// The last word to a client that has none.
-fn silence(trusted: bool, limits: &Limits) -> DaemonMessage {
-    if trusted {
-        let message = format!(
-            "nothing came for {} s, so the connection is closed; send a `ping` now and then",
-            limits.silent_seconds
-        );
-        refusal(ErrorCode::Limit, message)
-    } else {
-        let message = format!("no token came within {} s", limits.auth_seconds);
-        refusal(ErrorCode::Auth, message)
-    }
-}
-
-fn slowness(limits: &Limits) -> DaemonMessage {
-    let message = format!(
-        "more than {} lines or {} bytes came in a second; the rest is read as slowly as that",
-        limits.lines_per_second, limits.bytes_per_second
-    );
-    refusal(ErrorCode::Limit, message)
-}
+#[cfg(test)]
+mod tests;

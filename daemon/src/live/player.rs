@@ -240,6 +240,11 @@ impl Handle {
         self.send(Command::Caption(key, start, text.into())).await;
     }
 
+    /// Other rules for who speaks, and how much of it is held.
+    pub async fn rule(&self, rules: Rules) {
+        self.send(Command::Rules(Box::new(rules))).await;
+    }
+
     /// Done when the process is ending: nothing more is begun, and what was begun has been stopped.
     pub fn closing(&self) -> &CancellationToken {
         &self.closing

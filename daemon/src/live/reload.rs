@@ -17,6 +17,7 @@ use tokio::sync::mpsc;
 use winit::event_loop::EventLoopProxy;
 
 use super::player::Handle;
+use super::rules::Rules;
 use super::showing::Showing;
 use super::stop::Stop;
 use super::window::{Look, Wake};
@@ -116,6 +117,11 @@ impl Reload {
             let state = config.life.state.into();
             self.player.show(Showing::Rest(state)).await;
         }
+        let rules = Rules::of(&config);
+        if Rules::of(&old) != rules {
+            self.player.rule(rules).await;
+        }
+        // Clients that come from now on find the new bounds.
         self.current.store(Arc::new(config));
     }
 }

@@ -9,7 +9,7 @@ use crate::config::{Config, Turns};
 const PATIENT: i64 = 3;
 
 /// The rules.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Rules {
     /// How much of an utterance must be there before it begins, ticks: what covers for a sender that
     /// stutters, and what the mouth knows ahead.

@@ -8,6 +8,7 @@
 //!
 //! Nothing listens beyond this machine without a token.
 
+mod tcp;
 mod unix;
 mod websocket;
 
@@ -18,9 +19,7 @@ use std::time::Duration;
 
 use anyhow::{Context as _, Result, bail};
 use mouthpiece_protocol::{ErrorCode, Token};
-use socket2::{SockRef, TcpKeepalive};
 use tokio::net::{TcpListener, TcpStream, UnixListener};
-use tokio::sync::Semaphore;
 use tokio::task::JoinSet;
 use tokio_util::task::TaskTracker;
 
@@ -29,42 +28,37 @@ use super::connection::files::Files;
 use super::connection::peer::Peer;
 use super::connection::{self, Terms, refusal};
 use super::player::Handle;
+use super::reload::Current;
 use crate::config::Wire;
 use unix::SocketFile;
 use websocket::Guard;
 
-/// How long a TCP client may be unreachable before it counts as gone: half of a connection can be left
-/// open by a machine that lost its power.
-const KEEPALIVE: (Duration, Duration, u32) = (Duration::from_secs(30), Duration::from_secs(10), 3);
-
 /// Bound sockets.
 pub struct Server {
     ears: Vec<Ear>,
-    clients: usize,
-    write_patience: Duration,
     /// Held until the daemon ends.
     files: Vec<SocketFile>,
 }
 
-/// One of them, and what holds for who comes in there.
+/// One of them, and what holds for who comes in there as long as the daemon lives.
 struct Ear {
     listener: Listener,
-    terms: Terms,
+    token: Option<Token>,
+    files: Files,
 }
 
 enum Listener {
     Unix(UnixListener),
     Tcp(TcpListener),
-    WebSocket(TcpListener, Guard),
+    WebSocket(TcpListener),
 }
 
 /// What all of them share while they serve.
 struct Room {
     handle: Handle,
     served: TaskTracker,
-    places: Arc<Semaphore>,
-    clients: usize,
-    write_patience: Duration,
+    /// What else holds, for each client as it is when it comes.
+    current: Current,
     next: AtomicU64,
 }
 
@@ -75,14 +69,6 @@ impl Server {
         let below = match &wire.files {
             Some(folder) => Some(Files::below(folder)?),
             None => None,
-        };
-        let seconds = u64::try_from(wire.write_seconds.get()).unwrap_or(1);
-        let write_patience = Duration::from_secs(seconds);
-        let terms = |token: Option<Token>, files: Files| Terms {
-            limits: wire.limits(files != Files::None),
-            token,
-            files,
-            write_patience,
         };
         let (mut ears, mut files) = (Vec::new(), Vec::new());
         for address in Address::all(&wire.listen)? {
@@ -102,36 +88,25 @@ impl Server {
                     };
                     Ear {
                         listener: Listener::Unix(listener),
-                        terms: terms(None, near),
+                        token: None,
+                        files: near,
                     }
                 }
                 Address::Tcp(socket) => Ear {
-                    listener: Listener::Tcp(bind_tcp(*socket).await?),
-                    terms: terms(token.clone(), far),
+                    listener: Listener::Tcp(tcp::bind(*socket).await?),
+                    token: token.clone(),
+                    files: far,
                 },
-                Address::WebSocket(socket) => {
-                    let terms = terms(token.clone(), far);
-                    let guard = Guard {
-                        origins: wire.origins.clone(),
-                        token: token.clone(),
-                        frame_bytes: terms.limits.line_bytes,
-                    };
-                    let bound = bind_tcp(*socket).await?;
-                    Ear {
-                        listener: Listener::WebSocket(bound, guard),
-                        terms,
-                    }
-                }
+                Address::WebSocket(socket) => Ear {
+                    listener: Listener::WebSocket(tcp::bind(*socket).await?),
+                    token: token.clone(),
+                    files: far,
+                },
             };
             tracing::info!(%address, "listening");
             ears.push(ear);
         }
-        Ok(Self {
-            ears,
-            clients: usize::try_from(wire.clients.get()).unwrap_or(1),
-            write_patience,
-            files,
-        })
+        Ok(Self { ears, files })
     }
 
     /// The file of its Unix socket.
@@ -139,15 +114,14 @@ impl Server {
         self.files.first().map(|file| file.path().to_owned())
     }
 
-    /// Serves clients until the process ends and they have heard of it.
-    pub async fn serve(self, handle: Handle) {
+    /// Serves clients until the process ends and they have heard of it. Who comes in finds the bounds of `current`
+    /// as they are then, and keeps them.
+    pub async fn serve(self, handle: Handle, current: Current) {
         let served = TaskTracker::new();
         let room = Arc::new(Room {
             handle,
             served: served.clone(),
-            places: Arc::new(Semaphore::new(self.clients)),
-            clients: self.clients,
-            write_patience: self.write_patience,
+            current,
             next: AtomicU64::new(0),
         });
         let mut ears = JoinSet::new();
@@ -165,7 +139,7 @@ impl Server {
 /// A stream that was accepted and is not yet a client.
 enum Caller {
     Peer(Peer),
-    WebSocket(TcpStream, Guard),
+    WebSocket(TcpStream),
 }
 
 impl Ear {
@@ -181,21 +155,23 @@ impl Ear {
                     continue;
                 }
             };
+            let config = room.current.load_full();
+            let wire = &config.wire;
+            let terms = self.terms(wire);
             let vitals = &room.handle.vitals().net;
-            let Ok(place) = Arc::clone(&room.places).try_acquire_owned() else {
+            if room.served.len() >= usize::try_from(wire.clients.get()).unwrap_or(1) {
                 vitals.turned_away.add(1);
-                turn_away(caller, &room).await;
+                turn_away(caller, &terms, room.served.len()).await;
                 continue;
-            };
+            }
             vitals.connected.add(1);
             vitals.clients.add(1);
-            let terms = self.terms.clone();
+            let origins = wire.origins.clone();
             let tracker = room.served.clone();
             let room = Arc::clone(&room);
             tracker.spawn(async move {
-                welcome(caller, &room, terms).await;
+                welcome(caller, &room, origins, terms).await;
                 room.handle.vitals().net.clients.add(-1);
-                drop(place);
             });
         }
     }
@@ -207,64 +183,62 @@ impl Ear {
                 Caller::Peer(Peer::Lines((Box::new(r), Box::new(w))))
             }
             Listener::Tcp(listener) => {
-                let stream = listener.accept().await?.0;
-                prepare(&stream)?;
-                let (r, w) = stream.into_split();
+                let (r, w) = tcp::accept(listener).await?.into_split();
                 Caller::Peer(Peer::Lines((Box::new(r), Box::new(w))))
             }
-            Listener::WebSocket(listener, guard) => {
-                let stream = listener.accept().await?.0;
-                prepare(&stream)?;
-                Caller::WebSocket(stream, guard.clone())
-            }
+            Listener::WebSocket(listener) => Caller::WebSocket(tcp::accept(listener).await?),
         })
+    }
+
+    /// What holds for a client that comes in now.
+    fn terms(&self, wire: &Wire) -> Terms {
+        let seconds = u64::try_from(wire.write_seconds.get()).unwrap_or(1);
+        Terms {
+            limits: wire.limits(self.files != Files::None),
+            token: self.token.clone(),
+            files: self.files.clone(),
+            write_patience: Duration::from_secs(seconds),
+        }
     }
 }
 
 /// Serves a caller to the end.
-async fn welcome(caller: Caller, room: &Room, mut terms: Terms) {
+async fn welcome(caller: Caller, room: &Room, origins: Vec<String>, mut terms: Terms) {
     let number = room.next.fetch_add(1, Ordering::Relaxed);
     let peer = match caller {
         Caller::Peer(peer) => peer,
-        Caller::WebSocket(stream, guard) => match guard.welcome(stream).await {
-            Ok((socket, trusted)) => {
-                if trusted {
-                    terms.token = None;
+        Caller::WebSocket(stream) => {
+            let guard = Guard {
+                origins,
+                token: terms.token.clone(),
+                frame_bytes: terms.limits.line_bytes,
+            };
+            match guard.welcome(stream).await {
+                Ok((socket, trusted)) => {
+                    if trusted {
+                        terms.token = None;
+                    }
+                    Peer::Frames(socket)
                 }
-                Peer::Frames(socket)
+                Err(why) => {
+                    tracing::debug!(client = number, why, "a WebSocket was refused");
+                    return;
+                }
             }
-            Err(why) => {
-                tracing::debug!(client = number, why, "a WebSocket was refused");
-                return;
-            }
-        },
+        }
     };
     connection::serve(peer, room.handle.clone(), terms, number).await;
 }
 
 /// Says why and closes: the one case without a connection to go on with.
-async fn turn_away(caller: Caller, room: &Room) {
-    let clients = room.clients;
+async fn turn_away(caller: Caller, terms: &Terms, clients: usize) {
     tracing::warn!("{clients} clients are connected; another was turned away");
     if let Caller::Peer(mut peer) = caller {
         let why = format!("{clients} clients are connected already; try again later");
         let line = refusal(ErrorCode::Busy, why).line();
         // The answer fits the socket's buffer, so this does not wait.
-        let _ = peer.send(line, room.write_patience).await;
+        let _ = peer.send(line, terms.write_patience).await;
     }
-}
-
-async fn bind_tcp(address: std::net::SocketAddr) -> Result<TcpListener> {
-    let bound = TcpListener::bind(address).await;
-    bound.with_context(|| format!("cannot listen at {address}; give --listen another port"))
-}
-
-/// Small answers leave at once, and a client that is gone without a word is noticed.
-fn prepare(stream: &TcpStream) -> std::io::Result<()> {
-    stream.set_nodelay(true)?;
-    let (time, interval, retries) = KEEPALIVE;
-    let keepalive = TcpKeepalive::new().with_time(time).with_interval(interval);
-    SockRef::from(stream).set_tcp_keepalive(&keepalive.with_retries(retries))
 }
 
 fn read_token(file: &Path) -> Result<Token> {

@@ -12,9 +12,10 @@ use std::sync::atomic::{AtomicI64, Ordering};
 use super::time::seconds;
 
 /// Answers of one connection that wait to be sent: progress is left out long before.
-pub const ANSWERS_MAX: usize = 256;
-/// Room that is kept for answers that must not be lost.
-const ANSWERS_KEPT: usize = 128;
+pub const ANSWERS_MAX: usize = 384;
+/// Room that is kept for answers that must not be lost: the start and the end of each of the 100 utterances
+/// that a client may have waiting.
+const ANSWERS_KEPT: usize = 256;
 
 /// Where an utterance's answers go.
 pub type Answers = mpsc::Sender<DaemonMessage>;

@@ -39,6 +39,8 @@ pub struct WindowVitals {
     pub moved_ns: Moment,
     /// Time between two pictures, smoothed.
     pub interval_ns: Level,
+    /// The same of each picture but the first.
+    pub intervals_ns: Spread,
     /// From taking the time to having the picture handed over, ns.
     pub draw_ns: Spread,
     /// By how much the picture is later than the sound of its instant, by our own clocks, ns, smoothed; below zero it is
@@ -140,6 +142,7 @@ impl WindowVitals {
     pub fn shown(&self, begun_ns: i64, now_ns: i64, moved: bool, skew_ns: i64) {
         if let Some(last_ns) = self.presented_ns.get() {
             let (interval, mean) = (now_ns - last_ns, self.interval_ns.get());
+            self.intervals_ns.record(interval);
             let step = if mean == 0 {
                 interval
             } else {
@@ -314,6 +317,7 @@ mod tests {
         assert!((window.per_second(last + 2000 * MS) - 0.5).abs() < 0.01);
         assert_eq!(window.moved_ns.get(), Some((99 * 20 + 5) * MS));
         assert_eq!(window.draw_ns.counts().iter().sum::<u64>(), 200);
+        assert_eq!(window.intervals_ns.counts()[5], 199);
         assert_eq!(
             (window.skews_ns.counts()[2], window.skews_ns.counts()[1]),
             (200, 0)

@@ -1,6 +1,6 @@
 //! The sound thread driven by hand, on a steady clock and made-up time.
 
-use mouthpiece_phonemes::Phone;
+use mouthpiece_phonemes::{Phone, Segment};
 use mouthpiece_protocol::DaemonMessage;
 use mouthpiece_rig::{Control, Controls, TICK_RATE};
 
@@ -298,6 +298,21 @@ fn clients_take_turns_as_the_rules_say() {
             "started u10"
         ]
     );
+}
+
+#[test]
+fn changed_rules_hold_for_the_next_utterance() {
+    let mut stage = stage();
+    stage.begin(1, false);
+    stage.pass_ms(10);
+    let rules = Rules {
+        turns: Turns::Refuse,
+        ..Rules::of(&Config::default())
+    };
+    stage.send(Command::Rules(Box::new(rules)));
+    stage.begin(10, false);
+    stage.pass_ms(10);
+    assert_eq!(stage.told(), ["error u10 Busy"]);
 }
 
 #[test]
