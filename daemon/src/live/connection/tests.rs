@@ -263,7 +263,7 @@ impl Caller {
 }
 
 proptest! {
-    #![proptest_config(ProptestConfig::with_cases(48))]
+    #![proptest_config(ProptestConfig::with_cases(96))]
 
     #[test]
     fn every_utterance_ends_once_whatever_clients_do(
