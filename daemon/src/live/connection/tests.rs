@@ -193,8 +193,9 @@ impl Stage {
     /// How many utterances were begun, and how they ended: finished, stopped, failed.
     fn ends(&self) -> (u64, [u64; 3]) {
         let sound = &self.vitals.sound;
-        let ended = [&sound.finished, &sound.stopped, &sound.failed];
-        (sound.begun.get(), ended.map(|n| n.get()))
+        let [finished, stopped, failed] = [&sound.finished, &sound.stopped, &sound.failed];
+        let ended = [finished.get(), stopped.get(), failed.get()];
+        (sound.begun.get(), ended)
     }
 }
 
