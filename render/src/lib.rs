@@ -20,6 +20,7 @@
 mod batch;
 mod bindings;
 mod brows;
+mod coarse;
 mod environment;
 mod error;
 mod folds;

@@ -1,9 +1,10 @@
 //! The skin as it is drawn: the limit surface of the head's control mesh (see `rig::Subdivision`) as
-//! vertex and index buffers, and its points and normals of each frame.
+//! vertex and index buffers, and its points and normals of each frame. A tier may draw fewer of its triangles (`coarse`).
 
 use glam::Vec3;
 use mouthpiece_rig::{Detail, Head, Subdivision, SubdivisionError};
 
+use crate::coarse;
 use crate::folds::Folds;
 use crate::gpu_data::{SkinMoving, SkinStill, unorm};
 use crate::hairs;
@@ -11,7 +12,8 @@ use crate::maps;
 use crate::maps::hairline::Hairline;
 use crate::tier::Smoothness;
 
-/// The skin's buffers. Vertices are the subdivision's: points, then copies where the chart is cut.
+/// The skin's buffers. Vertices are the subdivision's, points, then copies where the chart is cut; or those of them that
+/// coarse triangles use.
 #[derive(Debug)]
 pub(crate) struct SkinGeometry {
     surface: Subdivision,
@@ -24,6 +26,8 @@ pub(crate) struct SkinGeometry {
     /// The head's own triangles, which are fine enough to cast the skin's soft shadow.
     pub(crate) casting: Vec<u32>,
     control_count: usize,
+    /// The point that each drawn vertex is at.
+    sources: Vec<u32>,
     points: Vec<Vec3>,
     normals: Vec<Vec3>,
     folds: Folds,
@@ -50,10 +54,13 @@ impl SkinGeometry {
         let marks = maps::landmarks::Landmarks::of(head);
         let zones = zones(&surface, rest, &marks);
         let points = surface.point_count();
-        let still = (0..points as u32)
+        let mut sources: Vec<u32> = (0..points as u32)
             .chain(surface.copies().iter().copied())
+            .collect();
+        let mut still: Vec<SkinStill> = sources
+            .iter()
             .zip(surface.uvs())
-            .map(|(point, uv)| {
+            .map(|(&point, uv)| {
                 let i = point as usize;
                 SkinStill {
                     uv: uv.to_array(),
@@ -68,13 +75,24 @@ impl SkinGeometry {
                 }
             })
             .collect();
+        let mut triangles = surface.triangles().to_vec();
+        let [mut inside, mut casting] = [inside(head), casting(head, &hidden)];
+        if smoothness.coarse {
+            triangles = coarse::triangles(head, &surface, &sources, &still, &marks);
+            (sources, still) = coarse::used(&mut triangles, &sources, &still);
+            let place = |i: u32| rest.get(sources[i as usize] as usize).copied();
+            let near = |t: &&[u32; 3]| t.iter().all(|&i| place(i).is_some_and(|p| near(p, &marks)));
+            inside = triangles.iter().filter(near).copied().collect();
+            casting.clone_from(&triangles);
+        }
         let mut geometry = Self {
-            moving: vec![SkinMoving::default(); surface.vertex_count()],
+            moving: vec![SkinMoving::default(); sources.len()],
             still,
-            indices: surface.triangles().as_flattened().to_vec(),
-            inside: inside_indices(head),
-            casting: casting_indices(head, &hidden),
+            indices: triangles.into_flattened(),
+            inside: inside.into_flattened(),
+            casting: casting.into_flattened(),
             control_count: rest.len(),
+            sources,
             points: vec![Vec3::ZERO; points],
             normals: vec![Vec3::ZERO; points],
             folds: Folds::of(points, surface.triangles(), surface.copies()),
@@ -110,23 +128,14 @@ impl SkinGeometry {
             *normal = normal.normalize_or(Vec3::Z);
         }
         self.folds.measure(&self.points, &self.normals);
-        for (i, ((out, p), n)) in self
-            .moving
-            .iter_mut()
-            .zip(&self.points)
-            .zip(&self.normals)
-            .enumerate()
-        {
+        for (out, &source) in self.moving.iter_mut().zip(&self.sources) {
+            let i = source as usize;
             let (light, convex) = self.folds.at(i);
             *out = SkinMoving {
-                position: p.to_array(),
-                normal: n.to_array(),
+                position: self.points[i].to_array(),
+                normal: self.normals[i].to_array(),
                 bend: [unorm(light), unorm(convex), 0, 0],
             };
-        }
-        let points = self.points.len();
-        for (k, &source) in self.surface.copies().iter().enumerate() {
-            self.moving[points + k] = self.moving[source as usize];
         }
     }
 }
@@ -154,27 +163,30 @@ const CHEEK_ACROSS_MM: f32 = 24.0;
 const CHEEK_HEIGHT_MM: f32 = 34.0;
 const CHEEK_DEPTH_MM: f32 = 75.0;
 
+fn near(p: Vec3, marks: &maps::landmarks::Landmarks) -> bool {
+    let to = p - marks.mouth;
+    to.x.abs() > CHEEK_ACROSS_MM && to.y.abs() < CHEEK_HEIGHT_MM && -to.z < CHEEK_DEPTH_MM
+}
+
 /// Control triangles do: what is dark and far back needs no finer ones.
-fn inside_indices(head: &Head) -> Vec<u32> {
-    let mouth = maps::landmarks::Landmarks::of(head).mouth;
+fn inside(head: &Head) -> Vec<[u32; 3]> {
+    let marks = maps::landmarks::Landmarks::of(head);
     let mesh = &head.skin.mesh;
-    let near = |i: &u32| {
-        let to = mesh.positions[*i as usize] - mouth;
-        to.x.abs() > CHEEK_ACROSS_MM && to.y.abs() < CHEEK_HEIGHT_MM && -to.z < CHEEK_DEPTH_MM
-    };
-    mesh.triangles
-        .iter()
-        .filter(|t| t.iter().all(near))
-        .flatten()
-        .copied()
-        .collect()
+    let near = |i: &u32| near(mesh.positions[*i as usize], &marks);
+    let all = mesh.triangles.iter().filter(|t| t.iter().all(near));
+    all.copied().collect()
 }
 
 /// All but what is covered by hair, as it is drawn.
-fn casting_indices(head: &Head, hidden: &[bool]) -> Vec<u32> {
+fn casting(head: &Head, hidden: &[bool]) -> Vec<[u32; 3]> {
     let seen = |t: &&[u32; 3]| !t.iter().all(|&i| hidden[i as usize]);
-    let triangles = head.skin.mesh.triangles.iter();
-    triangles.filter(seen).flatten().copied().collect()
+    head.skin
+        .mesh
+        .triangles
+        .iter()
+        .filter(seen)
+        .copied()
+        .collect()
 }
 
 /// Which skin vertices lie deep under hair: triangles of them need not be drawn.
@@ -240,6 +252,7 @@ mod tests {
             let smoothness = Smoothness {
                 levels,
                 bow_mm: 0.0,
+                coarse: false,
             };
             let geometry = SkinGeometry::of(&strip(), smoothness).unwrap();
             for t in geometry.indices.chunks_exact(3) {
@@ -261,10 +274,45 @@ mod tests {
     }
 
     #[test]
+    fn coarse_skin_has_fewer_triangles_of_the_same_places() {
+        let head = Head::reference().unwrap();
+        let of = |coarse| {
+            let smoothness = Smoothness {
+                levels: 0,
+                bow_mm: 0.0,
+                coarse,
+            };
+            SkinGeometry::of(&head, smoothness).unwrap()
+        };
+        let (all, some) = (of(false), of(true));
+        let (before, after) = (all.indices.len(), some.indices.len());
+        assert!(
+            after * 10 < before * 7 && after * 4 > before,
+            "{after} of {before}"
+        );
+        assert_eq!(some.moving.len(), some.still.len());
+        let lists = [&some.indices, &some.casting, &some.inside];
+        let all_of = lists.into_iter().flatten();
+        assert!(
+            all_of
+                .into_iter()
+                .all(|&i| (i as usize) < some.moving.len())
+        );
+        assert!(!some.inside.is_empty());
+        for (drawn, &source) in some.moving.iter().zip(&some.sources) {
+            assert_eq!(*drawn, all.moving[source as usize]);
+        }
+    }
+
+    #[test]
     fn the_skin_is_refined_where_it_bows_and_not_under_hair() {
         let head = Head::reference().unwrap();
         let drawn = |bow_mm| {
-            let smoothness = Smoothness { levels: 1, bow_mm };
+            let smoothness = Smoothness {
+                levels: 1,
+                bow_mm,
+                coarse: false,
+            };
             SkinGeometry::of(&head, smoothness).unwrap().indices.len() / 3
         };
         let control = head.skin.mesh.triangles.len();

@@ -42,6 +42,8 @@ pub(crate) struct Smoothness {
     /// A side is halved where the surface bows from it by more than this, mm; 0: always. A pixel of a picture of
     /// 640 x 480 is about 0.6 mm wide, and in software each triangle more is felt.
     pub(crate) bow_mm: f32,
+    /// Whether what is left out would not be missed in a picture of that size.
+    pub(crate) coarse: bool,
 }
 
 /// What a tier means in numbers.
@@ -93,6 +95,7 @@ impl Tier {
                 smoothness: Smoothness {
                     levels: 0,
                     bow_mm: 0.0,
+                    coarse: true,
                 },
                 samples: 1,
                 mask_map: 512,
@@ -110,6 +113,7 @@ impl Tier {
                 smoothness: Smoothness {
                     levels: 1,
                     bow_mm: 0.25,
+                    coarse: false,
                 },
                 samples: 4,
                 mask_map: 1024,
@@ -127,6 +131,7 @@ impl Tier {
                 smoothness: Smoothness {
                     levels: 2,
                     bow_mm: 0.15,
+                    coarse: false,
                 },
                 samples: 4,
                 mask_map: 2048,

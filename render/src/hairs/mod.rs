@@ -42,7 +42,8 @@ struct Card {
     pairs: usize,
 }
 
-/// The hair as it is drawn, `fine` with single hairs: where a pixel is one sample they are too thin to be seen.
+/// The hair as it is drawn, `fine` with single hairs and all bends of the cards: where a pixel is one sample the ones are
+/// too thin to be seen, and the others too slight.
 pub(crate) fn dressed(head: &Head, part: &Part, fine: bool) -> Mesh {
     let mesh = &part.mesh;
     let cards = cards(mesh);
@@ -62,7 +63,7 @@ pub(crate) fn dressed(head: &Head, part: &Part, fine: bool) -> Mesh {
                 single(&mut out, mesh, card, &mut dice);
             }
         } else {
-            split(&mut out, mesh, card, &mut dice);
+            split(&mut out, mesh, card, fine, &mut dice);
         }
     }
     keep_cap(&mut out, mesh);
@@ -121,7 +122,9 @@ fn join(out: &mut Mesh, first: usize) {
 
 /// A card, or the narrow ones that stand for it: each shows its part of the column, strays a little and ends where
 /// it likes.
-fn split(out: &mut Mesh, mesh: &Mesh, card: &Card, dice: &mut Dice) {
+fn split(out: &mut Mesh, mesh: &Mesh, card: &Card, fine: bool, dice: &mut Dice) {
+    // Every other pair does where a pixel is one sample.
+    let drawn = |i: usize| fine || i.is_multiple_of(2) || i + 1 == card.pairs;
     let pair = |i: usize| {
         let at = card.first + 2 * i;
         (mesh.positions[at], mesh.positions[at + 1])
@@ -156,7 +159,7 @@ fn split(out: &mut Mesh, mesh: &Mesh, card: &Card, dice: &mut Dice) {
         } else {
             1.0
         };
-        for i in 0..card.pairs {
+        for i in (0..card.pairs).filter(|i| drawn(*i)) {
             let at = card.first + 2 * i;
             let v = mesh.uvs[at].y;
             // The same way, shorter or longer: a place between the card's own pairs, or past the last.
