@@ -91,6 +91,9 @@ look_for_test() {
     has socat || missing socat "runs the example client in shell"
     has flite || missing flite "a voice, so that speaking a text is tested"
     has espeak-ng || missing espeak-ng "another voice"
+    has cage || missing cage "the compositor of the Wayland recipe"
+    has Xwayland || missing xwayland "which cage does not start without"
+    has grim || missing grim "takes a picture of what cage shows"
 }
 
 as_root() {

@@ -1,14 +1,17 @@
 //! What is to be said, from files or from the built-in demo: labels, sound and how long both last.
 
+use std::fs::File;
 use std::io;
+use std::os::unix::fs::OpenOptionsExt as _;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
-use anyhow::bail;
+use anyhow::{Context as _, bail};
 use mouthpiece_phonemes::{
     Alphabet, Labels, ReadOptions, SampleRate, Segment, Warning, check, spread,
 };
 use mouthpiece_rig::TICK_RATE;
+use nix::fcntl::{FcntlArg, OFlag, fcntl};
 
 use crate::cli::{InputArgs, TextArgs, Usage};
 use crate::dictionary;
@@ -34,6 +37,8 @@ pub struct Utterance {
     pub sound: Option<Arc<[f32]>>,
     /// How long it lasts: the longer of labels and sound.
     pub ticks: i64,
+    /// What is said, where it came as a text.
+    pub text: Option<String>,
 }
 
 impl Utterance {
@@ -70,11 +75,16 @@ impl Utterance {
     /// What an engine makes of a text, or where a text lies in a recording.
     fn of_text(text: &str, args: &InputArgs) -> anyhow::Result<Self> {
         let words = &args.text;
-        let spoken = match (words.tts, &args.audio) {
-            (Some(engine), _) => engine.speak(&voices::text(text)?, words.voice.as_deref())?,
+        let (spoken, text) = match (words.tts, &args.audio) {
+            (Some(engine), _) => {
+                let text = voices::text(text)?;
+                (engine.speak(&text, words.voice.as_deref())?, text)
+            }
             (None, Some(path)) => {
                 let sound = read_sound(path)?;
-                voices::align(&voices::text(text)?, sound, &path.display().to_string())?
+                let text = voices::text(text)?;
+                let name = path.display().to_string();
+                (voices::align(&text, sound, &name)?, text)
             }
             (None, None) => {
                 return Err(Usage(
@@ -85,7 +95,12 @@ impl Utterance {
                 .into());
             }
         };
-        Self::new(&spoken.name, spoken.labels, Some(spoken.sound.frames))
+        let sound = Some(spoken.sound.frames);
+        let utterance = Self::new(&spoken.name, spoken.labels, sound)?;
+        Ok(Self {
+            text: Some(text),
+            ..utterance
+        })
     }
 
     /// The built-in demo.
@@ -138,6 +153,7 @@ impl Utterance {
             segments: labels.segments,
             sound: sound.map(Arc::from),
             ticks,
+            text: None,
         })
     }
 }
@@ -188,11 +204,27 @@ pub fn pipe(path: &Path) -> Option<PathBuf> {
     Some(PathBuf::from(format!("/dev/fd/{number}")))
 }
 
+/// Opens what [`pipe`] named. A named pipe is opened anew, which would wait for a writer: one that has written all
+/// and is gone never comes back, and what it wrote is still there to be read.
+pub fn open_pipe(pipe: &Path) -> io::Result<File> {
+    let file = File::options()
+        .read(true)
+        .custom_flags(OFlag::O_NONBLOCK.bits())
+        .open(pipe)?;
+    // Reading waits as ever.
+    fcntl(&file, FcntlArg::F_SETFL(OFlag::empty()))?;
+    Ok(file)
+}
+
 /// Reads a sound file; `-` and `fd:3` as [`pipe`] has them.
 pub fn read_sound(path: &Path) -> Result<wav::Sound, wav::SoundError> {
-    match pipe(path) {
-        Some(pipe) => wav::read(&pipe),
-        None => wav::read(path),
+    let Some(pipe) = pipe(path) else {
+        return wav::read(path);
+    };
+    let name = path.display().to_string();
+    match open_pipe(&pipe) {
+        Ok(file) => wav::decode(io::BufReader::new(file), &name),
+        Err(source) => Err(wav::SoundError::Io { name, source }),
     }
 }
 
@@ -205,9 +237,12 @@ pub fn read_labels(
     let from = from.filter(|from| *from != AUTO);
     let labels = if path == Path::new("-") {
         mouthpiece_phonemes::read_from("<stdin>", io::stdin().lock(), from, options)
+    } else if let Some(pipe) = pipe(path) {
+        let name = path.display().to_string();
+        let file = open_pipe(&pipe).with_context(|| format!("{name} cannot be read"))?;
+        mouthpiece_phonemes::read_from(&name, file, from, options)
     } else {
-        let file = pipe(path);
-        mouthpiece_phonemes::read_file(file.as_deref().unwrap_or(path), from, options)
+        mouthpiece_phonemes::read_file(path, from, options)
     };
     Ok(labels?)
 }

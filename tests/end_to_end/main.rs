@@ -13,6 +13,8 @@
 //! | `head_landmarks` | the marking window where there is no display |
 //! | `health` | what supervisors, Prometheus and browsers are told; faults that heal |
 //! | `labels` | label files of every sad kind, and the round trip |
+//! | `cage` | the recipe for a kiosk under Wayland |
+//! | `captions` | words under the face: what `say --text` says |
 //! | `closures` | lips that close at every rate, over many sentences; look-ahead |
 //! | `device` | the sound device that goes and comes back |
 //! | `puppet` | other avatars, driven over UDP |
@@ -36,6 +38,8 @@
 )]
 
 mod backdrop;
+mod cage;
+mod captions;
 mod closures;
 mod config;
 mod device;

@@ -3,11 +3,13 @@
 
 use std::fs;
 use std::io::{BufRead as _, BufReader, Write as _};
+use std::os::unix::fs::PermissionsExt as _;
 use std::os::unix::net::UnixStream;
-use std::process::Stdio;
+use std::process::{Command, Stdio};
 use std::time::{Duration, Instant};
 
 use mouthpiece_tests::binary;
+use mouthpiece_tests::wav::{self, Coding};
 use serde_json::Value;
 
 /// Far more than any answer takes; a daemon that says nothing must not stop the run.
@@ -89,4 +91,51 @@ fn the_conversation_of_the_readme_runs_as_printed() {
         }
     }
     assert!(heard >= 4, "only {heard} answers in the README");
+}
+
+/// Guards sound and labels through two pipes, as printed, with an engine that has written all of its labels, and closed
+/// them, before its sound is asked for.
+#[test]
+fn two_pipes_are_spoken_as_the_readme_prints_it() {
+    let text = readme();
+    let command = text.split('`').find(|code| code.contains("3>labels |"));
+    let folder = tempfile::tempdir().unwrap();
+    let at = |name: &str| folder.path().join(name);
+    let sound = wav::file(Coding::S16, 16_000, 1, &wav::tone(16_000, 200.0, 0.0, 0.5));
+    fs::write(at("sound.wav"), sound).unwrap();
+    let engine = "#!/bin/sh\necho 0 8000 aa >&3\nexec 3>&-\nexec cat sound.wav\n";
+    fs::write(at("my-tts"), engine).unwrap();
+    fs::set_permissions(at("my-tts"), fs::Permissions::from_mode(0o755)).unwrap();
+    let mut daemon = binary::command(&["run", "--audio-device", "none", "--http", "none"]);
+    daemon
+        .env("XDG_RUNTIME_DIR", folder.path())
+        .stdout(Stdio::null());
+    let mut daemon = binary::start(&mut daemon);
+    let begun = Instant::now();
+    while !at("mouthpiece.sock").exists() {
+        assert!(!daemon.has_ended(), "{}", daemon.finish().stderr);
+        assert!(begun.elapsed() < PATIENCE, "no socket");
+        std::thread::sleep(Duration::from_millis(10));
+    }
+    let path = std::env::var("PATH").unwrap_or_default();
+    let program = binary::path();
+    let mut shell = Command::new("sh");
+    shell
+        .args(["-c", &format!("mkfifo labels && {}", command.unwrap())])
+        .current_dir(folder.path())
+        .env("XDG_RUNTIME_DIR", folder.path())
+        .env("XDG_CONFIG_HOME", folder.path())
+        .env(
+            "PATH",
+            format!(
+                "{}:{}:{path}",
+                folder.path().display(),
+                program.parent().unwrap().display()
+            ),
+        )
+        .env_remove("DISPLAY")
+        .env_remove("WAYLAND_DISPLAY")
+        .stdin(Stdio::null());
+    let said = binary::start(&mut shell).finish_within(PATIENCE);
+    assert_eq!(said.code(), 0, "{command:?}: {}", said.stderr);
 }

@@ -169,6 +169,7 @@ pub fn command<S: AsRef<OsStr>>(args: &[S]) -> Command {
         .stdin(Stdio::null())
         .env_remove("DISPLAY")
         .env_remove("WAYLAND_DISPLAY")
+        .env_remove("DBUS_SESSION_BUS_ADDRESS")
         .env_remove("RUST_LOG")
         // No daemon of the user's is to be spoken through, no configuration of theirs read.
         .env("XDG_RUNTIME_DIR", runtime_folder())

@@ -6,7 +6,7 @@ use super::section::section;
 use super::value::Whole;
 
 section! {
-    /// The words under the face, where clients send them (`caption`).
+    /// The words under the face: what clients send (`caption`), and the text of `say --text`.
     pub struct Captions {
         /// How they are shown: "off", on a dark "box", or white with a dark "outline". Their
         /// letters are Latin, Greek and Cyrillic.

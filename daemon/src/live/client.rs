@@ -5,7 +5,7 @@ use std::time::Duration;
 use anyhow::{Context as _, Result, bail};
 use base64::Engine as _;
 use mouthpiece_phonemes::{Segment, Stress};
-use mouthpiece_protocol::message::{Audio, Begin, Label};
+use mouthpiece_protocol::message::{Audio, Begin, Caption, Label};
 use mouthpiece_protocol::{ClientMessage, DaemonMessage, SampleFormat, limits};
 use tokio::io::{AsyncBufReadExt as _, AsyncWriteExt as _, BufReader};
 use tokio::net::{TcpStream, UnixStream};
@@ -133,6 +133,10 @@ fn heard(line: &str) -> Result<bool> {
 /// The messages that carry a piece; none is the end.
 fn messages(piece: Option<&Piece>) -> Vec<ClientMessage> {
     match piece {
+        Some(Piece::Caption(at, text)) => vec![ClientMessage::Caption(Caption {
+            text: text.clone(),
+            start: Some(*at as f64 / f64::from(RATE_HZ)),
+        })],
         Some(Piece::Segments(segments)) => segments
             .chunks(limits::PHONES_PER_MESSAGE_MAX)
             .map(|part| ClientMessage::Phones {

@@ -13,7 +13,8 @@
 //! channels for commands, cues and answers, and a slot with the text on the screen ([`captions`]). [`player`] puts
 //! them together. [`vitals`] is what each says of itself, [`motion`] whether the face moves, [`shots`] gives the picture on
 //! the screen to whoever asks. [`speaker`] is what `say`
-//! does without a daemon, [`client`] what it does with one; both take their utterance from [`source`].
+//! does without a daemon, [`client`] what it does with one; both take their utterance from [`source`]; [`subtitles`] makes captions of a
+//! text that is spoken.
 //! [`reload`] takes a changed configuration over, [`service`] tells systemd,
 //! [`deadline`] ends what does not end. [`sync`] is a test of sound against picture, judged from outside. All time is [`time`]'s.
 
@@ -42,6 +43,7 @@ mod sound;
 mod source;
 mod speaker;
 mod stop;
+mod subtitles;
 mod sync;
 pub mod time;
 mod utterance;

@@ -12,6 +12,7 @@ use mouthpiece_phonemes::{Alphabet, LineError, SampleRate, Segment};
 use tokio::sync::mpsc;
 
 use super::sound::resample::Resample;
+use super::subtitles::subtitles;
 use crate::cli::InputArgs;
 use crate::input::{self, AUTO, Utterance};
 use crate::media::wav;
@@ -30,6 +31,8 @@ const RATE_HZ: u32 = 48_000;
 /// A piece of an utterance.
 #[derive(Debug)]
 pub enum Piece {
+    /// A text for the screen, and from which tick of the sound on.
+    Caption(i64, String),
     /// Labels, in order.
     Segments(Vec<Segment>),
     /// Sound, 48 kHz, one channel.
@@ -57,14 +60,15 @@ impl Source {
         let streamed = Streamed::of(args)?.filter(|_| labels.is_some());
         let labels = match (labels, streamed) {
             (Some(pipe), Some(streamed)) => {
-                let file = File::open(&pipe)
+                let file = input::open_pipe(&pipe)
                     .with_context(|| format!("{} cannot be read", path.display()))?;
                 Labels::Coming(file, streamed)
             }
             // A format that must be there to its end.
             _ => {
                 let options = input::options(args)?;
-                Labels::There(input::read_labels(path, args.from.as_deref(), &options)?.segments)
+                let labels = input::read_labels(path, args.from.as_deref(), &options)?;
+                Labels::There(labels.segments, Vec::new())
             }
         };
         let sound = match (sound, sound_pipe) {
@@ -78,14 +82,20 @@ impl Source {
     /// What is read and checked at once.
     fn whole(args: &InputArgs) -> Result<Self> {
         let Utterance {
-            segments, sound, ..
+            segments,
+            sound,
+            text,
+            ..
         } = Utterance::load(args)?;
-        Self::of(segments, sound.map(|s| s.to_vec()))
+        let captions = subtitles(text.as_deref().unwrap_or_default(), &segments);
+        let sound = sound.map(|s| SoundFrom::Frames(s.to_vec()));
+        Self::start(sound, Labels::There(segments, captions))
     }
 
     /// An utterance that is there already.
     pub fn of(segments: Vec<Segment>, sound: Option<Vec<f32>>) -> Result<Self> {
-        Self::start(sound.map(SoundFrom::Frames), Labels::There(segments))
+        let labels = Labels::There(segments, Vec::new());
+        Self::start(sound.map(SoundFrom::Frames), labels)
     }
 
     /// Sends sound and labels, each from a thread of its own: labels must not wait until a long sound
@@ -95,9 +105,15 @@ impl Source {
         let has_sound = sound.is_some();
         let sound_send = send.clone();
         spawn("labels", move || match labels {
-            Labels::There(segments) => {
-                // Nobody left to say it: nothing to do.
-                let _ = send.blocking_send(Piece::Segments(segments));
+            Labels::There(segments, captions) => {
+                let captions = captions
+                    .into_iter()
+                    .map(|(at, text)| Piece::Caption(at, text));
+                for piece in captions.chain([Piece::Segments(segments)]) {
+                    if send.blocking_send(piece).is_err() {
+                        return; // nobody left to say it
+                    }
+                }
             }
             Labels::Coming(file, streamed) => labels_from(file, streamed, &send),
         })?;
@@ -118,9 +134,9 @@ impl Source {
     }
 }
 
-/// Labels that are there already, or come through a pipe.
+/// Labels that are there already, with the captions of their text, or come through a pipe.
 enum Labels {
-    There(Vec<Segment>),
+    There(Vec<Segment>, Vec<(i64, String)>),
     Coming(File, Streamed),
 }
 
@@ -133,7 +149,7 @@ enum SoundFrom {
 /// Opens sound that comes through `pipe`, and waits for its header.
 fn coming_sound(path: &Path, pipe: &Path) -> Result<SoundFrom> {
     let name = path.display().to_string();
-    let file = File::open(pipe).with_context(|| format!("{name} cannot be read"))?;
+    let file = input::open_pipe(pipe).with_context(|| format!("{name} cannot be read"))?;
     let stream = wav::Stream::open(file, &name, PIPE_BYTES)?;
     let resample = Resample::new(stream.rate(), RATE_HZ)?;
     Ok(SoundFrom::Pipe(stream, Box::new(resample)))

@@ -36,6 +36,7 @@ pub async fn speak(
     loop {
         tokio::select! {
             piece = source.pieces.recv(), if coming => match piece {
+                Some(Piece::Caption(at, text)) => handle.caption(Some(key), at, text).await,
                 Some(Piece::Segments(segments)) => handle.segments(key, segments).await,
                 Some(Piece::Sound(mono)) => handle.sound(key, mono).await,
                 None => {

@@ -34,9 +34,7 @@ impl App {
             self.pace.set_refresh(millihertz);
         }
         let window = open::window(events, wanted, monitor.as_ref())?;
-        let awake = (wanted.fullscreen && wanted.keep_awake)
-            .then(Awake::new)
-            .flatten();
+        let awake = (wanted.fullscreen && wanted.keep_awake).then(|| Awake::new(&window));
         let target = self.target(&window)?;
         Ok(Open {
             target: Some(target),
@@ -69,7 +67,7 @@ impl App {
             let wanted = look.window.fullscreen && look.window.keep_awake;
             open.awake = match open.awake.take() {
                 Some(awake) => wanted.then_some(awake),
-                None => wanted.then(Awake::new).flatten(),
+                None => wanted.then(|| Awake::new(&open.window)),
             };
         }
         self.look = look;
