@@ -116,10 +116,11 @@ fn nth_tick(segments: &[Segment], mut sounded: i64) -> i64 {
 /// Where the pause nearest to `guess` ends; `guess` itself where none is near.
 fn after_pause(segments: &[Segment], guess: i64) -> i64 {
     let pauses = segments.iter().filter(|s| s.phone.is_silence());
-    let nearest = pauses.map(|s| s.end).min_by_key(|end| (end - guess).abs());
+    let distance = |pause: &Segment| (pause.start - guess).max(guess - pause.end).max(0);
+    let nearest = pauses.min_by_key(|pause| distance(pause));
     nearest
-        .filter(|end| (end - guess).abs() <= NEAR_TICKS)
-        .unwrap_or(guess)
+        .filter(|pause| distance(pause) <= NEAR_TICKS)
+        .map_or(guess, |pause| pause.end)
 }
 
 #[cfg(test)]
@@ -163,7 +164,7 @@ mod tests {
         let wanted = [(0, "Abcde fghij.".into()), (4 * S, "Klmno pqrst.".into())];
         assert_eq!(found, wanted);
         // Off by less than a second of what the pause says.
-        let found = subtitles("Abcde fghi. Jklmn opqrst.", &segments);
+        let found = subtitles("Ab cde fghi. Jklmn opqrst.", &segments);
         assert_eq!(found[1].0, 4 * S);
         // No pause is near: a third of the letters is a third of what sounds.
         let found = subtitles("Abcde fghij. Klmno pqrst uvwxy zabcd.", &segments);
