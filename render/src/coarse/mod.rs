@@ -24,7 +24,7 @@ const SHARE_OFF: f32 = 0.08;
 const CHART_OFF: f32 = 0.0015;
 const ZONE_OFF: f32 = 0.15;
 
-/// Fewer triangles of the drawn vertices; lips, lids and creases keep theirs.
+/// Fewer triangles of the drawn vertices; lids' margins and creases keep theirs.
 pub(crate) fn triangles(
     head: &Head,
     surface: &Subdivision,
