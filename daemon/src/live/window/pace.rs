@@ -2,10 +2,12 @@
 
 /// A screen that does not say how often it refreshes.
 const REFRESH_NS: i64 = 1_000_000_000 / 60;
-/// No more pictures than this when the processor draws them: it has the head to move, too.
+/// So many pictures are wanted where the processor draws them.
 const SOFTWARE_NS: i64 = 1_000_000_000 / 30;
-/// And this share of the time to rest between them, in tenths of what a picture takes.
-const REST_TENTHS: i64 = 3;
+/// It rests between them, since it has the head to move, too: in tenths of what a picture takes, so long at most,
+/// and so long at least where they are slow.
+const REST_TENTHS: i64 = 7;
+const SHORT_REST_TENTHS: i64 = 3;
 /// Slow pictures count no further than this, so that one hiccup does not shift those after it.
 const DRAW_NS_MAX: i64 = 150_000_000;
 /// The first pictures load pipelines and maps: how long they take says nothing.
@@ -54,8 +56,11 @@ impl Pace {
     /// Time between two pictures.
     pub(super) fn interval_ns(&self) -> i64 {
         if self.software {
-            let drawn = self.draw_ns + self.draw_ns * REST_TENTHS / 10;
-            drawn.max(SOFTWARE_NS).max(self.refresh_ns)
+            let rested = |tenths| self.draw_ns * (10 + tenths) / 10;
+            rested(REST_TENTHS)
+                .min(SOFTWARE_NS)
+                .max(rested(SHORT_REST_TENTHS))
+                .max(self.refresh_ns)
         } else {
             self.refresh_ns
         }
@@ -64,7 +69,7 @@ impl Pace {
     /// What drawing a picture may take, so that all come in time and the processor has its rest.
     pub(super) fn budget_ns(&self) -> i64 {
         if self.software {
-            SOFTWARE_NS.max(self.refresh_ns) * 10 / (10 + REST_TENTHS)
+            SOFTWARE_NS.max(self.refresh_ns) * 10 / (10 + SHORT_REST_TENTHS)
         } else {
             self.refresh_ns * 8 / 10
         }
@@ -146,13 +151,20 @@ mod tests {
     }
 
     #[test]
-    fn software_leaves_the_processor_some_rest() {
-        let mut pace = Pace::default();
-        pace.set_software(true);
-        for n in 0..100 {
-            pace.shown(n * 100 * MS, n * 100 * MS + 50 * MS);
+    fn software_draws_as_often_as_leaves_the_processor_some_rest() {
+        for (draw_ms, interval_ns) in [
+            (5, REFRESH_NS),
+            (14, 14 * MS * 17 / 10),
+            (22, SOFTWARE_NS),
+            (50, 65 * MS),
+        ] {
+            let mut pace = Pace::default();
+            pace.set_software(true);
+            for n in 0..100 {
+                pace.shown(n * 100 * MS, (n * 100 + draw_ms) * MS);
+            }
+            assert_eq!(pace.interval_ns(), interval_ns, "{draw_ms}");
+            assert_eq!(pace.ahead_ns(), draw_ms * MS + interval_ns / 2);
         }
-        assert_eq!(pace.interval_ns(), 65 * MS);
-        assert_eq!(pace.ahead_ns(), 50 * MS + 65 * MS / 2);
     }
 }
