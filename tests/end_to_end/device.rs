@@ -81,15 +81,6 @@ fn at_home<'a>(command: &'a mut Command, folder: &Path) -> &'a mut Command {
         .env("PULSE_SERVER", server)
 }
 
-/// How many loud samples the sink's monitor gives within `time`.
-fn loudness(folder: &Path, time: Duration) -> usize {
-    let (recorder, reading) = record(folder);
-    std::thread::sleep(time);
-    drop(recorder);
-    let tape = reading.join().unwrap();
-    tape.samples.iter().filter(|s| is_loud(s)).count()
-}
-
 fn is_loud(sample: &i16) -> bool {
     sample.unsigned_abs() > LOUD
 }
@@ -117,6 +108,8 @@ struct Stage {
     client: UnixStream,
     /// Where the daemon tells what its face does.
     watcher: UdpSocket,
+    /// There from the beginning to the end of the server: the sink pauses when a recorder comes or goes.
+    recording: Recording,
 }
 
 /// None: the tools are missing.
@@ -148,6 +141,9 @@ fn stage() -> Option<Stage> {
         assert!(begun.elapsed() < PATIENCE, "no socket");
         std::thread::sleep(Duration::from_millis(10));
     };
+    let recording = record(folder);
+    // Until stamps of the device are settled, and the log says its latency.
+    std::thread::sleep(Duration::from_secs(3));
     Some(Stage {
         client,
         home,
@@ -155,6 +151,7 @@ fn stage() -> Option<Stage> {
         begun,
         daemon,
         watcher,
+        recording,
     })
 }
 
@@ -184,8 +181,18 @@ struct Tape {
     pieces: Vec<(Instant, usize)>,
 }
 
+/// A recorder at work.
+struct Recording(Running, std::thread::JoinHandle<Tape>);
+
+impl Recording {
+    fn end(self) -> Tape {
+        drop(self.0);
+        self.1.join().unwrap()
+    }
+}
+
 /// Records until the recorder is ended.
-fn record(folder: &Path) -> (Running, std::thread::JoinHandle<Tape>) {
+fn record(folder: &Path) -> Recording {
     let mut recorder = Running::start(
         at_home(&mut Command::new("parec"), folder)
             .args(["-d", "test.monitor", "--raw", "--format=s16le"])
@@ -209,10 +216,15 @@ fn record(folder: &Path) -> (Running, std::thread::JoinHandle<Tape>) {
         }
         tape
     });
-    (recorder, reading.unwrap())
+    Recording(recorder, reading.unwrap())
 }
 
 impl Tape {
+    /// How many samples were loud.
+    fn loudness(&self) -> usize {
+        self.samples.iter().filter(|s| is_loud(s)).count()
+    }
+
     /// When the first loud sample was heard, seconds after `begun`: pieces come late, never early.
     fn onset(&self, begun: Instant) -> f64 {
         let loud = self.samples.iter().position(is_loud);
@@ -231,17 +243,14 @@ impl Tape {
 fn the_first_sound_comes_in_time_and_the_mouth_no_later() {
     let Some(stage) = stage() else { return };
     let Stage {
-        home,
+        home: _home,
         server,
         begun,
         daemon,
         mut client,
         watcher,
+        recording,
     } = stage;
-    let folder = home.path();
-    let (recorder, reading) = record(folder);
-    // Until stamps of the device are settled, and the log says its latency.
-    std::thread::sleep(Duration::from_secs(3));
     let look = Duration::from_millis(5);
     client.set_read_timeout(Some(look)).unwrap();
     for line in [
@@ -267,8 +276,7 @@ fn the_first_sound_comes_in_time_and_the_mouth_no_later() {
         let _ = answers.read_line(&mut line);
     }
     gaps(&watcher, begun, &mut seen);
-    drop(recorder);
-    let heard = reading.join().unwrap().onset(begun);
+    let heard = recording.end().onset(begun);
     daemon.signal("TERM");
     let said = daemon.finish_within(PATIENCE).stderr;
     drop(server);
@@ -306,6 +314,7 @@ fn a_sound_server_that_goes_for_ten_seconds_stops_only_the_sound() {
         daemon,
         mut client,
         watcher,
+        recording,
     } = stage;
     let folder = home.path();
 
@@ -337,8 +346,9 @@ fn a_sound_server_that_goes_for_ten_seconds_stops_only_the_sound() {
         .unwrap();
     let mut answers = BufReader::new(client);
     let mut seen = Vec::new();
-    let (mut line, mut server, mut started, mut stopped, mut loud) =
-        (String::new(), Some(server), None, None, 0);
+    let (mut line, mut server, mut started, mut stopped) =
+        (String::new(), Some(server), None, None);
+    let mut recording = Some(recording);
     let finished = loop {
         assert!(begun.elapsed() < 2 * PATIENCE, "it never ends");
         gaps(&watcher, begun, &mut seen);
@@ -347,10 +357,7 @@ fn a_sound_server_that_goes_for_ten_seconds_stops_only_the_sound() {
             && Instant::elapsed(&at) > GONE
         {
             server = Some(pulseaudio(folder));
-        }
-        // The device is tried again every few seconds; then it must be heard.
-        if server.is_some() && stopped.is_some() && loud == 0 {
-            loud = loudness(folder, Duration::from_millis(500));
+            recording = Some(record(folder));
         }
         match answers.read_line(&mut line) {
             Ok(0) => panic!("closed"),
@@ -364,7 +371,8 @@ fn a_sound_server_that_goes_for_ten_seconds_stops_only_the_sound() {
             Some("progress") => {
                 let at = answer["position_s"].as_f64().unwrap();
                 if at > STOPPED_AT_S && stopped.is_none() {
-                    assert!(loudness(folder, Duration::from_millis(500)) > 1000);
+                    let loud = recording.take().unwrap().end().loudness();
+                    assert!(loud > 1000, "{loud} loud samples before the stop");
                     server = None;
                     stopped = Some(Instant::now());
                 }
@@ -375,6 +383,7 @@ fn a_sound_server_that_goes_for_ten_seconds_stops_only_the_sound() {
         }
     };
     let lasted = started.unwrap().elapsed().as_secs_f64();
+    let loud = recording.unwrap().end().loudness();
     gaps(&watcher, begun, &mut seen);
     daemon.signal("TERM");
     let said = daemon.finish_within(PATIENCE).stderr;
@@ -387,6 +396,7 @@ fn a_sound_server_that_goes_for_ten_seconds_stops_only_the_sound() {
         "{finished}"
     );
     assert!(loud > 1000, "the sound did not come back\n{said}");
+    assert_eq!(said.matches("going on without sound").count(), 1, "{said}");
     assert!(
         (whole..whole + 2.0).contains(&lasted),
         "{whole} s took {lasted} s\n{said}"

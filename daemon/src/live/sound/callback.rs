@@ -4,7 +4,7 @@
 //! is what was taken out of the ring: when the ring runs dry there is silence and time stands.
 
 use std::sync::Arc;
-use std::sync::atomic::{AtomicBool, AtomicI64, AtomicU32, AtomicU64, Ordering};
+use std::sync::atomic::{AtomicBool, AtomicI64, AtomicU64, Ordering};
 
 use rtrb::Consumer;
 
@@ -13,9 +13,9 @@ use crate::live::time::ticks_from_frames;
 
 /// Seconds over which sound that is stopped fades out, so that it does not click.
 const FADE_S: f32 = 0.005;
-/// A device that fails so often without asking for sound in between is gone, whatever it calls its errors: ALSA's
-/// PulseAudio plugin reports a plain input/output error, again and again, once its server has died.
-const FAILURES_MAX: u32 = 8;
+/// A device that has failed for this long and not asked for sound in between is gone, whatever it calls its errors:
+/// ALSA's PulseAudio plugin reports a plain input/output error, again and again, once its server has died.
+const FAILING_NS: i64 = 300_000_000;
 
 /// What the callback and the sound thread tell each other.
 #[derive(Debug, Default)]
@@ -32,8 +32,8 @@ pub(super) struct Link {
     pub(super) underruns: AtomicU64,
     /// The device says that it is gone or must be opened anew.
     pub(super) lost: AtomicBool,
-    /// Errors since the last callback, other than running dry.
-    failures: AtomicU32,
+    /// When the first error since the last callback came, running dry apart; 0: there was none.
+    failing_since_ns: AtomicI64,
     /// The tick of the first frame that is taken: written by the sound thread before `on_air`.
     pub(super) base: AtomicI64,
     /// This device keeps the clock: written by the sound thread. Before, it plays silence and says
@@ -42,11 +42,12 @@ pub(super) struct Link {
 }
 
 impl Link {
-    /// Takes in what the device complains of; never waits, never allocates.
-    pub(super) fn failed(&self, gone: bool) {
-        let failures = self.failures.fetch_add(1, Ordering::Relaxed) + 1;
-        if gone || failures >= FAILURES_MAX {
-            self.lost.store(true, Ordering::Release);
+    /// Takes in an error that the device reports at `now_ns`; never waits, never allocates.
+    pub(super) fn failed(&self, now_ns: i64) {
+        match self.failing_since_ns.load(Ordering::Relaxed) {
+            0 => self.failing_since_ns.store(now_ns, Ordering::Relaxed),
+            since_ns if now_ns - since_ns > FAILING_NS => self.lost.store(true, Ordering::Release),
+            _ => {}
         }
     }
 }
@@ -88,7 +89,7 @@ impl Callback {
         playback_ns: i64,
         sample: impl Fn(f32) -> T,
     ) {
-        self.link.failures.store(0, Ordering::Relaxed);
+        self.link.failing_since_ns.store(0, Ordering::Relaxed);
         if !self.link.on_air.load(Ordering::Acquire) {
             return;
         }
@@ -165,19 +166,14 @@ mod tests {
     fn a_device_that_only_fails_is_lost_and_one_that_goes_on_is_not() {
         let (_tx, mut callback) = rig(48_000);
         let lost = |callback: &Callback| callback.link.lost.load(Ordering::Acquire);
-        for _ in 0..3 {
-            for _ in 1..FAILURES_MAX {
-                callback.link.failed(false);
-            }
+        for now_ns in [1, FAILING_NS, 3 * FAILING_NS] {
+            callback.link.failed(now_ns);
+            callback.link.failed(now_ns + FAILING_NS);
             assert!(!lost(&callback));
             callback.fill(&mut [0.0_f32; 4], 0, |x| x);
         }
-        for _ in 0..FAILURES_MAX {
-            callback.link.failed(false);
-        }
-        assert!(lost(&callback));
-        let (_tx, callback) = rig(48_000);
-        callback.link.failed(true);
+        callback.link.failed(1);
+        callback.link.failed(2 + FAILING_NS);
         assert!(lost(&callback));
     }
 

@@ -165,8 +165,10 @@ fn build<T: SizedSample + FromSample<f32>>(
             // thread, and a device that is silent without a word is the watchdog's.
             match error.kind() {
                 ErrorKind::Xrun => {}
-                ErrorKind::DeviceNotAvailable | ErrorKind::StreamInvalidated => link.failed(true),
-                _ => link.failed(false),
+                ErrorKind::DeviceNotAvailable | ErrorKind::StreamInvalidated => {
+                    link.lost.store(true, Ordering::Release);
+                }
+                _ => link.failed(origin.now_ns()),
             }
         },
         None,
