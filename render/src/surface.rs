@@ -75,16 +75,19 @@ impl SkinGeometry {
                 }
             })
             .collect();
-        let mut triangles = surface.triangles().to_vec();
-        let [mut inside, mut casting] = [inside(head), casting(head, &hidden)];
-        if smoothness.coarse {
-            triangles = coarse::triangles(head, &surface, &sources, &still, &marks);
+        let (triangles, inside, casting) = if smoothness.coarse {
+            let mut triangles = coarse::triangles(head, &surface, &sources, &still, &marks);
             (sources, still) = coarse::used(&mut triangles, &sources, &still);
             let place = |i: u32| rest.get(sources[i as usize] as usize).copied();
-            let near = |t: &&[u32; 3]| t.iter().all(|&i| place(i).is_some_and(|p| near(p, &marks)));
-            inside = triangles.iter().filter(near).copied().collect();
-            casting.clone_from(&triangles);
-        }
+            let inside = inside(&triangles, &marks, place);
+            (triangles.clone(), inside, triangles)
+        } else {
+            // Control triangles do: what is dark and far back needs no finer ones.
+            let control = &skin.mesh.triangles;
+            let inside = inside(control, &marks, |i| rest.get(i as usize).copied());
+            let triangles = surface.triangles().to_vec();
+            (triangles, inside, casting(control, &hidden))
+        };
         let mut geometry = Self {
             moving: vec![SkinMoving::default(); sources.len()],
             still,
@@ -163,30 +166,25 @@ const CHEEK_ACROSS_MM: f32 = 24.0;
 const CHEEK_HEIGHT_MM: f32 = 34.0;
 const CHEEK_DEPTH_MM: f32 = 75.0;
 
-fn near(p: Vec3, marks: &maps::landmarks::Landmarks) -> bool {
-    let to = p - marks.mouth;
-    to.x.abs() > CHEEK_ACROSS_MM && to.y.abs() < CHEEK_HEIGHT_MM && -to.z < CHEEK_DEPTH_MM
-}
-
-/// Control triangles do: what is dark and far back needs no finer ones.
-fn inside(head: &Head) -> Vec<[u32; 3]> {
-    let marks = maps::landmarks::Landmarks::of(head);
-    let mesh = &head.skin.mesh;
-    let near = |i: &u32| near(mesh.positions[*i as usize], &marks);
-    let all = mesh.triangles.iter().filter(|t| t.iter().all(near));
+/// Those triangles whose corners all lie there.
+fn inside(
+    triangles: &[[u32; 3]],
+    marks: &maps::landmarks::Landmarks,
+    place: impl Fn(u32) -> Option<Vec3>,
+) -> Vec<[u32; 3]> {
+    let near = |&i: &u32| {
+        place(i).map(|p| p - marks.mouth).is_some_and(|to| {
+            to.x.abs() > CHEEK_ACROSS_MM && to.y.abs() < CHEEK_HEIGHT_MM && -to.z < CHEEK_DEPTH_MM
+        })
+    };
+    let all = triangles.iter().filter(|t| t.iter().all(near));
     all.copied().collect()
 }
 
 /// All but what is covered by hair, as it is drawn.
-fn casting(head: &Head, hidden: &[bool]) -> Vec<[u32; 3]> {
+fn casting(triangles: &[[u32; 3]], hidden: &[bool]) -> Vec<[u32; 3]> {
     let seen = |t: &&[u32; 3]| !t.iter().all(|&i| hidden[i as usize]);
-    head.skin
-        .mesh
-        .triangles
-        .iter()
-        .filter(seen)
-        .copied()
-        .collect()
+    triangles.iter().filter(seen).copied().collect()
 }
 
 /// Which skin vertices lie deep under hair: triangles of them need not be drawn.

@@ -241,45 +241,37 @@ impl Tape {
 /// no later than the sound begins.
 #[test]
 fn the_first_sound_comes_in_time_and_the_mouth_no_later() {
-    let Some(stage) = stage() else { return };
-    let Stage {
-        home: _home,
-        server,
-        begun,
-        daemon,
-        mut client,
-        watcher,
-        recording,
-    } = stage;
+    let Some(mut stage) = stage() else { return };
+    let begun = stage.begun;
     let look = Duration::from_millis(5);
-    client.set_read_timeout(Some(look)).unwrap();
+    stage.client.set_read_timeout(Some(look)).unwrap();
     for line in [
         json!({"type": "begin", "id": "a", "audio": {"rate": 8000, "channels": 1, "format": "s16"}}),
         json!({"type": "phones", "phones": [{"start": 0.0, "end": 0.6, "phone": "aa"}]}),
         json!({"type": "audio", "data": WAVE.repeat(400)}),
         json!({"type": "end"}),
     ] {
-        writeln!(client, "{line}").unwrap();
+        writeln!(stage.client, "{line}").unwrap();
     }
     let sent = begun.elapsed().as_secs_f64();
     let mut seen = Vec::new();
     // The face is looked at as often as it is told.
-    let mut answers = BufReader::new(client);
+    let mut answers = BufReader::new(stage.client);
     let mut line = String::new();
     while !line.contains("\"finished\"") {
         assert!(begun.elapsed() < PATIENCE, "it never ends");
-        gaps(&watcher, begun, &mut seen);
+        gaps(&stage.watcher, begun, &mut seen);
         if line.ends_with('\n') {
             line.clear();
         }
         // Nothing yet, or half a line.
         let _ = answers.read_line(&mut line);
     }
-    gaps(&watcher, begun, &mut seen);
-    let heard = recording.end().onset(begun);
-    daemon.signal("TERM");
-    let said = daemon.finish_within(PATIENCE).stderr;
-    drop(server);
+    gaps(&stage.watcher, begun, &mut seen);
+    let heard = stage.recording.end().onset(begun);
+    stage.daemon.signal("TERM");
+    let said = stage.daemon.finish_within(PATIENCE).stderr;
+    drop(stage.server);
     let latency = said
         .split("latency_ms=")
         .nth(1)

@@ -8,6 +8,7 @@ use std::process::{Child, Command, Stdio};
 use std::time::{Duration, Instant};
 
 use mouthpiece_tests::binary;
+use mouthpiece_tests::daemon::wait_for_words;
 use mouthpiece_tests::display::Display;
 use mouthpiece_tests::or_skipped;
 use mouthpiece_tests::picture::Picture;
@@ -69,15 +70,7 @@ impl Face {
     /// Waits until the log holds `words` so many times.
     #[track_caller]
     fn wait_for_log(&self, words: &str, times: usize) {
-        let begun = Instant::now();
-        while self.log().matches(words).count() < times {
-            assert!(
-                begun.elapsed() < PATIENCE,
-                "{words:?} is not said: {}",
-                self.log()
-            );
-            std::thread::sleep(Duration::from_millis(20));
-        }
+        wait_for_words(|| self.log(), words, times);
     }
 
     /// What the service manager is told next; none when it is told nothing for so long.

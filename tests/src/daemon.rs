@@ -60,6 +60,20 @@ impl Answer {
     }
 }
 
+/// Waits until a log holds `words` so many times.
+#[track_caller]
+pub fn wait_for_words(log: impl Fn() -> String, words: &str, times: usize) {
+    let begun = Instant::now();
+    while log().matches(words).count() < times {
+        assert!(
+            begun.elapsed() < PATIENCE,
+            "{words:?} is not said\n{}",
+            log()
+        );
+        std::thread::sleep(Duration::from_millis(20));
+    }
+}
+
 impl Daemon {
     /// Starts one with `more` arguments, on `screen` or without any, and waits until it tells its health. It logs JSON.
     #[must_use]
@@ -138,15 +152,7 @@ impl Daemon {
     /// Waits until the log holds `words` so many times.
     #[track_caller]
     pub fn wait_for_log(&self, words: &str, times: usize) {
-        let begun = Instant::now();
-        while self.log().matches(words).count() < times {
-            assert!(
-                begun.elapsed() < PATIENCE,
-                "{words:?} is not said\n{}",
-                self.log()
-            );
-            std::thread::sleep(Duration::from_millis(20));
-        }
+        wait_for_words(|| self.log(), words, times);
     }
 
     /// Sends a request as it is.

@@ -343,4 +343,6 @@ impl Conductor {
 }
 
 #[cfg(test)]
+pub(super) mod by_hand;
+#[cfg(test)]
 mod tests;

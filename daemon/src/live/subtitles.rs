@@ -45,38 +45,31 @@ pub fn subtitles(text: &str, segments: &[Segment]) -> Vec<(i64, String)> {
 /// Pieces of whole words that fit the screen, cut after punctuation where that leaves them not too short.
 fn cut(text: &str) -> Vec<String> {
     let blank = |c: char| c.is_whitespace() || c.is_control();
-    let mut pieces = Vec::new();
-    let (mut piece, mut chars) = (String::new(), 0);
+    let length = |piece: &str| piece.chars().count();
+    let (mut pieces, mut piece) = (Vec::new(), String::new());
     for word in text.split(blank).filter(|word| !word.is_empty()) {
-        let mut word: Vec<char> = word.chars().collect();
-        // Nobody's word: no line would hold it.
-        while word.len() > CHARS_MAX {
-            let rest = word.split_off(CHARS_MAX);
-            pieces.extend((chars > 0).then(|| std::mem::take(&mut piece)));
-            pieces.push(word.into_iter().collect());
-            (word, chars) = (rest, 0);
+        let word: Vec<char> = word.chars().collect();
+        // A longer one is nobody's word: no line would hold it.
+        for part in word.chunks(CHARS_MAX) {
+            if !piece.is_empty() {
+                if length(&piece) + 1 + part.len() > CHARS_MAX {
+                    pieces.push(std::mem::take(&mut piece));
+                } else {
+                    piece.push(' ');
+                }
+            }
+            piece.extend(part);
         }
-        if chars + 1 + word.len() > CHARS_MAX && chars > 0 {
-            pieces.push(std::mem::take(&mut piece));
-            chars = 0;
-        }
-        if chars > 0 {
-            piece.push(' ');
-            chars += 1;
-        }
-        chars += word.len();
-        piece.extend(word);
         let least = if piece.ends_with(is_stop) {
             SENTENCE_CHARS_MIN
         } else {
             CHARS_MIN
         };
-        if chars >= least && piece.ends_with(is_mark) {
+        if length(&piece) >= least && piece.ends_with(is_mark) {
             pieces.push(std::mem::take(&mut piece));
-            chars = 0;
         }
     }
-    pieces.extend((chars > 0).then_some(piece));
+    pieces.extend((!piece.is_empty()).then_some(piece));
     pieces
 }
 

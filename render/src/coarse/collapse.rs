@@ -159,6 +159,7 @@ impl Mesh<'_> {
             .neighbours(fans, to)
             .into_iter()
             .filter(|i| ring.binary_search(i).is_ok());
+        // The two triangles at the edge between them are gone from either fan.
         let crowded = fan.len() + fans.at(to).len() > FAN_MAX + 4;
         if crowded || common.count() != 2 {
             return None;

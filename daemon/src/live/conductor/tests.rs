@@ -2,13 +2,11 @@
 
 use mouthpiece_phonemes::{Phone, Segment};
 use mouthpiece_protocol::DaemonMessage;
-use mouthpiece_rig::{Control, Controls, TICK_RATE};
+use mouthpiece_rig::TICK_RATE;
 
+use super::by_hand::ByHand;
 use super::*;
 use crate::config::Config;
-use crate::live::clock::ClockCell;
-use crate::live::sound::Choice;
-use crate::live::time::Origin;
 use crate::live::utterance::ANSWERS_MAX;
 
 /// How much of an utterance must be there: as `run` has it by default.
@@ -32,25 +30,15 @@ fn stage_with(change: impl Fn(&mut Rules)) -> Stage {
     let mut rules = Rules::of(&Config::default());
     rules.look_ahead = LOOK_AHEAD;
     change(&mut rules);
-    let origin = Origin::new();
-    let output = Output::open(Choice::Silent, Arc::new(ClockCell::default()), origin);
-    let (commands, inbox) = mpsc::channel(COMMANDS_MAX);
-    let (cue, cues) = crossbeam::channel::bounded(CUES_MAX);
-    let speech = Speech::with(|a| {
-        let mut controls = Controls::default();
-        controls[Control::Jaw] = a.jaw_rad;
-        controls
-    })
-    .unwrap();
-    let now_ns = origin.now_ns();
-    let ends = Ends {
-        commands: inbox,
-        cues: cue,
-        face: None,
-        captions: Arc::default(),
-    };
+    let ByHand {
+        conductor,
+        commands,
+        cues,
+        now_ns,
+        ..
+    } = ByHand::new(rules);
     Stage {
-        conductor: Conductor::new(output, ends, speech, rules, Arc::new(Vitals::new(origin))),
+        conductor,
         commands,
         cues,
         answers: mpsc::channel(ANSWERS_MAX),

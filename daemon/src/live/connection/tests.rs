@@ -4,8 +4,6 @@
 use std::collections::BTreeMap;
 use std::sync::{Arc, Mutex};
 
-use mouthpiece_rig::{Control, Controls};
-use mouthpiece_speech::Speech;
 use proptest::prelude::*;
 use serde_json::Value;
 use tokio::io::{AsyncBufReadExt as _, AsyncWriteExt as _, BufReader, DuplexStream, WriteHalf};
@@ -13,11 +11,9 @@ use tokio::task::JoinHandle;
 
 use super::*;
 use crate::config::{Config, Turns};
-use crate::live::clock::ClockCell;
-use crate::live::conductor::{COMMANDS_MAX, CUES_MAX, Conductor, Cue, Ends};
+use crate::live::conductor::by_hand::ByHand;
+use crate::live::conductor::{Conductor, Cue};
 use crate::live::rules::Rules;
-use crate::live::sound::{Choice, Output};
-use crate::live::time::Origin;
 use crate::live::vitals::Vitals;
 
 /// Bytes under way between a client and its connection.
@@ -117,32 +113,22 @@ async fn settle() {
 
 impl Stage {
     fn new(turns: Turns) -> Self {
-        let origin = Origin::new();
-        let output = Output::open(Choice::Silent, Arc::new(ClockCell::default()), origin);
-        let (commands, inbox) = mpsc::channel(COMMANDS_MAX);
-        let (cue, cues) = crossbeam::channel::bounded(CUES_MAX);
-        let speech = Speech::with(|a| {
-            let mut controls = Controls::default();
-            controls[Control::Jaw] = a.jaw_rad;
-            controls
-        });
-        let vitals = Arc::new(Vitals::new(origin));
-        let ends = Ends {
-            commands: inbox,
-            cues: cue,
-            face: None,
-            captions: Arc::default(),
-        };
-        let rules = Rules {
-            turns,
-            ..Rules::of(&Config::default())
-        };
-        let handle = Handle::new(commands, Arc::clone(&vitals));
-        Self {
-            conductor: Conductor::new(output, ends, speech.unwrap(), rules, Arc::clone(&vitals)),
+        let ByHand {
+            conductor,
+            commands,
             cues,
             vitals,
-            now_ns: origin.now_ns(),
+            now_ns,
+        } = ByHand::new(Rules {
+            turns,
+            ..Rules::of(&Config::default())
+        });
+        let handle = Handle::new(commands, Arc::clone(&vitals));
+        Self {
+            conductor,
+            cues,
+            vitals,
+            now_ns,
             clients: (0..3)
                 .map(|number| Caller::connect(&handle, number))
                 .collect(),
